@@ -1,0 +1,1 @@
+//! Benchmarks of every layer, and side-by-side runs against peers.

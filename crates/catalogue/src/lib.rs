@@ -1,0 +1,48 @@
+//! The built-in objects: twelve of a library, two that no library holds, and spheres.
+//!
+//! The laser scans and meshes behind Sec. IV-A of the paper are not published, so the objects here
+//! are modelled anew as analytic solids: their true radial functions and normals are known, and
+//! scans of any density and noise can be drawn from them.
+//!
+//! ```
+//! let shampoo = catalogue::by_id("S5").expect("S5 is in the library");
+//! let cloud = shampoo.scan(7);
+//! assert_eq!(cloud.len(), catalogue::SCAN_POINTS);
+//! ```
+
+mod chart;
+mod field;
+mod library;
+mod noise;
+mod object;
+mod primitive;
+mod solid;
+mod sphere;
+mod unseen;
+
+pub use noise::ScanNoise;
+pub use object::{CatalogueObject, SCAN_POINTS, SurfacePoint};
+pub use sphere::{sphere_radii, sphere_scan};
+
+use std::sync::LazyLock;
+
+static LIBRARY: LazyLock<Vec<CatalogueObject>> = LazyLock::new(library::build);
+static UNSEEN: LazyLock<Vec<CatalogueObject>> = LazyLock::new(unseen::build);
+
+/// The twelve library objects S1 to S12, in this order.
+pub fn library_objects() -> &'static [CatalogueObject] {
+    &LIBRARY
+}
+
+/// The two objects U1 and U2 that stand for things never seen before.
+pub fn unseen_objects() -> &'static [CatalogueObject] {
+    &UNSEEN
+}
+
+/// The object with the given id ("S1" to "S12", "U1", "U2"; capital letters), if there is one.
+pub fn by_id(id: &str) -> Option<&'static CatalogueObject> {
+    library_objects()
+        .iter()
+        .chain(unseen_objects())
+        .find(|object| object.id == id)
+}

@@ -1,0 +1,65 @@
+//! Fig. 4 of the paper: on its straight ways to others, S5 passes the neighbourhood of S7 and S8.
+
+mod common;
+
+use catalogue::{by_id, library_objects};
+use common::equal_area_directions;
+
+/// The radial function about the centre on an equal-area grid of directions.
+fn radial_function(id: &str) -> Vec<f64> {
+    let object = by_id(id).expect("a known id");
+    equal_area_directions(80, 120)
+        .map(|d| object.radius(&d))
+        .collect()
+}
+
+/// Root mean square over the sphere: the L² norm up to √(4π), by midpoint quadrature.
+fn norm(f: &[f64]) -> f64 {
+    (f.iter().map(|x| x * x).sum::<f64>() / f.len() as f64).sqrt()
+}
+
+fn minus(f: &[f64], g: &[f64]) -> Vec<f64> {
+    f.iter().zip(g).map(|(x, y)| x - y).collect()
+}
+
+/// Distance of f from the straight segment between a and b, and where its foot lies (0 at a).
+fn distance_from_segment(f: &[f64], a: &[f64], b: &[f64]) -> (f64, f64) {
+    let (along, from_a) = (minus(b, a), minus(f, a));
+    let dot: f64 = along.iter().zip(&from_a).map(|(x, y)| x * y).sum();
+    let t = (dot / along.iter().map(|x| x * x).sum::<f64>()).clamp(0.0, 1.0);
+    let foot: Vec<f64> = a.iter().zip(&along).map(|(x, d)| x + t * d).collect();
+    (norm(&minus(f, &foot)), t)
+}
+
+#[test]
+fn s5_passes_near_s7_and_s8_when_it_is_deformed() {
+    let start = radial_function("S5");
+    for near in ["S7", "S8"] {
+        let shape = radial_function(near);
+        let (ratio, t) = ["S1", "S2", "S10", "S11"]
+            .map(|target| {
+                let end = radial_function(target);
+                let (distance, t) = distance_from_segment(&shape, &start, &end);
+                let ends = norm(&minus(&shape, &start)).min(norm(&minus(&shape, &end)));
+                (distance / ends, t)
+            })
+            .into_iter()
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .expect("four ways");
+        assert!(ratio <= 0.55, "{near}: {ratio}");
+        assert!((0.2..=0.8).contains(&t), "{near}: {t}");
+    }
+}
+
+#[test]
+fn no_two_library_objects_are_alike() {
+    let shapes: Vec<_> = library_objects()
+        .iter()
+        .map(|o| radial_function(o.id))
+        .collect();
+    for (k, f) in shapes.iter().enumerate() {
+        for g in &shapes[k + 1..] {
+            assert!(norm(&minus(f, g)) >= 3e-3);
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! Force closure by a linear programme, independent of any hull.
+
+use crate::contact::Contact;
+use crate::convention::Convention;
+use crate::linear::{Outcome, Programme};
+use crate::wrench::{Wrench, WrenchError, wrenches};
+use nalgebra::{DMatrix, Point3};
+
+/// A singular value below this part of the largest counts as zero.
+const RANK_TOLERANCE: f64 = 1e-9;
+/// A smallest weight (times the number of wrenches) below this counts as zero.
+const WEIGHT_TOLERANCE: f64 = 1e-9;
+
+/// Whether the grasp resists every small wrench: the origin lies strictly inside Conv{w_ij}.
+///
+/// The wrenches must span R⁶ and be balanced by weights that are all positive, the largest
+/// smallest of which a linear programme finds. Grasps whose epsilon quality is below about 1e-8 of
+/// the longest wrench may be called either way.
+pub fn force_closed(
+    contacts: &[Contact],
+    centre: &Point3<f64>,
+    convention: &Convention,
+) -> Result<bool, WrenchError> {
+    Ok(wrenches_force_closed(&wrenches(
+        contacts, centre, convention,
+    )?))
+}
+
+/// The same for a plain list of wrenches.
+pub fn wrenches_force_closed(wrenches: &[Wrench]) -> bool {
+    spans(wrenches) && min_weight_of(wrenches).is_some_and(|w| w > WEIGHT_TOLERANCE)
+}
+
+fn spans(wrenches: &[Wrench]) -> bool {
+    if wrenches.len() < 7 {
+        return false;
+    }
+    let matrix = DMatrix::from_fn(6, wrenches.len(), |i, j| wrenches[j][i]);
+    let values = matrix.singular_values();
+    values[5] > RANK_TOLERANCE * values[0]
+}
+
+/// The largest ℓ with Σ α_i w_i = 0, Σ α_i = 1 and all α_i ≥ ℓ, times the number of wrenches; None
+/// where not even ℓ = 0 is possible.
+pub(crate) fn min_weight_of(wrenches: &[Wrench]) -> Option<f64> {
+    // α_i = ℓ + s_i with s, ℓ ≥ 0; the forces and torques are scaled to the same size.
+    let n = wrenches.len();
+    let reach = wrenches.iter().map(|w| w.norm()).fold(0.0, f64::max);
+    let mut rows: Vec<Vec<f64>> = (0..6)
+        .map(|k| {
+            let mut row: Vec<f64> = wrenches.iter().map(|w| w[k] / reach).collect();
+            row.push(row.iter().sum());
+            row
+        })
+        .collect();
+    let mut sum = vec![1.0; n];
+    sum.push(n as f64);
+    rows.push(sum);
+    let mut right = vec![0.0; 7];
+    right[6] = 1.0;
+    let mut cost = vec![0.0; n + 1];
+    cost[n] = -1.0;
+    match (Programme { rows, right, cost }).solve() {
+        Outcome::Optimal { value, .. } => Some(-value * n as f64),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    fn ring(count: usize) -> Vec<Contact> {
+        (0..count)
+            .map(|i| {
+                let a = std::f64::consts::TAU * i as f64 / count as f64;
+                let p = Vector3::new(a.cos(), a.sin(), 0.0);
+                Contact {
+                    position: p.into(),
+                    inward_normal: nalgebra::Unit::new_normalize(-p),
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn three_contacts_close_and_two_do_not() {
+        let convention = Convention::named("unit").unwrap();
+        let closed = |c: &[Contact]| force_closed(c, &Point3::origin(), &convention);
+        assert_eq!(closed(&ring(3)), Ok(true));
+        // Two points cannot resist a torque about the line through them.
+        assert_eq!(closed(&ring(2)), Ok(false));
+        let mut same_side = ring(3);
+        same_side[1] = same_side[0];
+        same_side[2] = same_side[0];
+        assert_eq!(closed(&same_side), Ok(false));
+    }
+}

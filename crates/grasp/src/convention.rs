@@ -1,0 +1,261 @@
+//! Conventions of grasp quality as named values: every system prints another number for one grasp.
+
+use crate::contact::Contact;
+use nalgebra::Point3;
+use thiserror::Error;
+
+/// How long the edges of a friction cone are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EdgeNorm {
+    /// f = n + μ(…): the component along the normal is 1.
+    UnitNormalComponent,
+    /// The same edge divided by its length √(1+μ²).
+    UnitLength,
+}
+
+/// The length by which torques are divided to become comparable with forces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TorqueLength {
+    /// A fixed length in metres, positive.
+    Metres(f64),
+    /// The largest distance of a contact from the centre. Systems that take the largest distance of
+    /// a vertex of the object are obeyed with `Metres` of that distance.
+    MaxContactDistance,
+}
+
+impl TorqueLength {
+    /// The length in metres for these contacts about `centre`.
+    pub fn resolve(
+        &self,
+        contacts: &[Contact],
+        centre: &Point3<f64>,
+    ) -> Result<f64, ConventionError> {
+        let value = match *self {
+            TorqueLength::Metres(value) => value,
+            TorqueLength::MaxContactDistance => contacts
+                .iter()
+                .map(|c| (c.position - centre).norm())
+                .fold(0.0, f64::max),
+        };
+        if value.is_finite() && value > 0.0 {
+            Ok(value)
+        } else {
+            Err(ConventionError::TorqueLength { value })
+        }
+    }
+}
+
+/// Which point a caller who knows the object puts into `Grasp::centre`.
+///
+/// This crate knows no surface: it takes the centre of the grasp as it is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CentreRule {
+    /// The mean of the point cloud.
+    CloudMean,
+    /// The centre of mass of the solid.
+    CentreOfMass,
+    /// The origin of the object's frame.
+    ObjectOrigin,
+    /// The centre that the grasp carries.
+    Given,
+}
+
+/// How a friction cone is represented.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Edges {
+    /// A pyramid of this many edges, three or more, inscribed in the round cone.
+    Polygon(usize),
+    /// The round cone itself; results are intervals of at most this width (in units of quality).
+    Round {
+        /// The width at which the search may stop, positive.
+        tolerance: f64,
+    },
+}
+
+/// Everything that turns contacts into a number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Convention {
+    /// The name under which results are reported.
+    pub name: String,
+    /// The length of cone edges.
+    pub edge_norm: EdgeNorm,
+    /// The divisor of torques.
+    pub torque_length: TorqueLength,
+    /// The point that callers put into `Grasp::centre`.
+    pub centre: CentreRule,
+    /// The friction coefficient μ > 0.
+    pub friction: f64,
+    /// The representation of the friction cone.
+    pub edges: Edges,
+    /// The number printed for a grasp that is not force-closed.
+    pub not_closed: f64,
+}
+
+impl Convention {
+    /// The names that `Convention::named` knows.
+    pub const NAMES: [&'static str; 6] =
+        ["paper", "graspit", "dexnet", "frogger", "openrave", "unit"];
+
+    /// A convention by name.
+    ///
+    /// - `paper`: our reading of Grasp Moduli Spaces (ICRA 2014), which states none: μ = 1, ten
+    ///   edges, centimetres, the cloud's mean.
+    /// - `graspit`: torque over the largest distance from the centre of mass, eight edges, −1 when
+    ///   open; its μ comes from a table of materials, of which rubber on plastic (1.0) stands here.
+    /// - `dexnet`: torques in millimetres, μ = 0.5, eight edges.
+    /// - `frogger`: unit edges, metres, object origin, μ = 0.7, four edges, −1 when open.
+    /// - `openrave`: unit edges, metres, object origin, μ = 0.4, eight edges.
+    /// - `unit`: no scaling at all about the given centre; μ = 1 and eight edges until told.
+    pub fn named(name: &str) -> Result<Self, UnknownConvention> {
+        use CentreRule::{CentreOfMass, CloudMean, Given, ObjectOrigin};
+        use EdgeNorm::{UnitLength, UnitNormalComponent};
+        use TorqueLength::{MaxContactDistance, Metres};
+        let (edge_norm, torque_length, centre, friction, edges, not_closed) = match name {
+            "paper" => (UnitNormalComponent, Metres(0.01), CloudMean, 1.0, 10, 0.0),
+            "graspit" => (
+                UnitNormalComponent,
+                MaxContactDistance,
+                CentreOfMass,
+                1.0,
+                8,
+                -1.0,
+            ),
+            "dexnet" => (UnitNormalComponent, Metres(1e-3), CentreOfMass, 0.5, 8, 0.0),
+            "frogger" => (UnitLength, Metres(1.0), ObjectOrigin, 0.7, 4, -1.0),
+            "openrave" => (UnitLength, Metres(1.0), ObjectOrigin, 0.4, 8, 0.0),
+            "unit" => (UnitNormalComponent, Metres(1.0), Given, 1.0, 8, 0.0),
+            _ => {
+                return Err(UnknownConvention {
+                    name: name.to_owned(),
+                });
+            }
+        };
+        Ok(Convention {
+            name: name.to_owned(),
+            edge_norm,
+            torque_length,
+            centre,
+            friction,
+            edges: Edges::Polygon(edges),
+            not_closed,
+        })
+    }
+
+    /// Checks friction, edges and a fixed torque length.
+    pub fn validate(&self) -> Result<(), ConventionError> {
+        if !(self.friction.is_finite() && self.friction > 0.0) {
+            return Err(ConventionError::Friction {
+                value: self.friction,
+            });
+        }
+        match self.edges {
+            Edges::Polygon(count) if !(3..=MAX_EDGES).contains(&count) => {
+                return Err(ConventionError::Edges { count });
+            }
+            Edges::Round { tolerance } if !(tolerance.is_finite() && tolerance > 0.0) => {
+                return Err(ConventionError::Tolerance { value: tolerance });
+            }
+            _ => {}
+        }
+        match self.torque_length {
+            TorqueLength::Metres(value) if !(value.is_finite() && value > 0.0) => {
+                Err(ConventionError::TorqueLength { value })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// More edges than this a contact are refused: the round cone is what is meant then.
+pub(crate) const MAX_EDGES: usize = 1024;
+
+/// A name that is none of `Convention::NAMES`.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("unknown convention {name:?}; known: paper, graspit, dexnet, frogger, openrave, unit")]
+pub struct UnknownConvention {
+    /// The name given.
+    pub name: String,
+}
+
+/// A convention with a number out of range.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum ConventionError {
+    /// Friction not finite and positive.
+    #[error("friction coefficient {value}: must be finite and positive")]
+    Friction {
+        /// The coefficient given.
+        value: f64,
+    },
+    /// Too few or too many edges.
+    #[error("{count} edges a friction cone: must be between 3 and {MAX_EDGES}")]
+    Edges {
+        /// The edges given.
+        count: usize,
+    },
+    /// A tolerance of the round cone that is not finite and positive.
+    #[error("tolerance {value} of the round cone: must be finite and positive")]
+    Tolerance {
+        /// The tolerance given.
+        value: f64,
+    },
+    /// A torque length that is not finite and positive (or all contacts lie at the centre).
+    #[error("torque length {value}: must be finite and positive")]
+    TorqueLength {
+        /// The length found.
+        value: f64,
+    },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_known_and_valid() {
+        for name in Convention::NAMES {
+            let convention = Convention::named(name).unwrap();
+            assert_eq!(convention.name, name);
+            assert_eq!(convention.validate(), Ok(()));
+        }
+        let error = Convention::named("grasp-it").unwrap_err();
+        for name in Convention::NAMES {
+            assert!(error.to_string().contains(name));
+        }
+    }
+
+    #[test]
+    fn refuses_numbers_out_of_range() {
+        let unit = Convention::named("unit").unwrap();
+        for friction in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let bad = Convention {
+                friction,
+                ..unit.clone()
+            };
+            assert!(matches!(
+                bad.validate(),
+                Err(ConventionError::Friction { .. })
+            ));
+        }
+        let bad = Convention {
+            edges: Edges::Polygon(2),
+            ..unit.clone()
+        };
+        assert_eq!(bad.validate(), Err(ConventionError::Edges { count: 2 }));
+        let bad = Convention {
+            edges: Edges::Round { tolerance: 0.0 },
+            ..unit.clone()
+        };
+        assert_eq!(
+            bad.validate(),
+            Err(ConventionError::Tolerance { value: 0.0 })
+        );
+        let bad = Convention {
+            torque_length: TorqueLength::Metres(-0.01),
+            ..unit
+        };
+        assert_eq!(
+            bad.validate(),
+            Err(ConventionError::TorqueLength { value: -0.01 })
+        );
+    }
+}

@@ -1,0 +1,10 @@
+//! Convex hulls of points in R⁶, and nothing else.
+
+mod full;
+pub(crate) mod min_norm;
+pub(crate) mod plane;
+pub(crate) mod polytope;
+pub(crate) mod search;
+pub(crate) mod simplex;
+
+pub use full::{ConvexHull, Facet, HullError};

@@ -1,0 +1,412 @@
+//! A growing simplicial polytope in R⁶: planes, neighbours and the step that adds a vertex.
+//!
+//! A new vertex removes the facets that it sees and is joined to the ridges of their border. The
+//! hyperplane of a new facet lies in the pencil of the two facets that meet at its ridge,
+//! n = h_vis n_hid − h_hid n_vis with h the heights of the new vertex, so no system is solved.
+//! Whichever facets rounding calls visible, the surface stays closed: the border of any set of
+//! facets is a cycle. Together with the residual that each plane carries (how far it may miss its
+//! own vertices) this makes min(offset − residual) a lower bound of the ball inside, however thin
+//! a facet may be.
+
+use super::plane::{Plane, V6, add_scaled, norm, scale};
+
+/// A neighbour across a ridge: the facet's number and which of its six vertices the ridge omits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Link(u32);
+
+impl Link {
+    const NONE: Link = Link(u32::MAX);
+
+    fn new(facet: u32, slot: usize) -> Link {
+        Link(facet << 3 | slot as u32)
+    }
+
+    pub(crate) fn facet(self) -> usize {
+        (self.0 >> 3) as usize
+    }
+
+    fn slot(self) -> usize {
+        (self.0 & 7) as usize
+    }
+}
+
+/// Six vertices in ascending order, the outward plane, and the facet across each ridge.
+#[derive(Clone, Debug)]
+pub(crate) struct Facet {
+    pub(crate) plane: Plane,
+    height: f64,
+    epoch: u32,
+    pub(crate) vertices: [u16; 6],
+    links: [Link; 6],
+    /// Set once the plane has been replaced by the best one for this simplex.
+    pub(crate) settled: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Slot {
+    key: u64,
+    epoch: u32,
+    link: Link,
+}
+
+/// The most vertices that a polytope may hold (vertex numbers are 16 bits wide).
+pub(crate) const MAX_VERTICES: usize = u16::MAX as usize;
+
+/// The surface and all scratch of its growth; cleared, never shrunk, by `start`.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Polytope {
+    pub(crate) vertices: Vec<V6>,
+    /// What the caller calls each vertex.
+    pub(crate) tags: Vec<u32>,
+    pub(crate) facets: Vec<Facet>,
+    /// Offset of each facet, +∞ where the slot is free.
+    pub(crate) keys: Vec<f64>,
+    /// Facets made since `start`.
+    pub(crate) created: usize,
+    /// The rounding error of a height: a few ulps of the longest vertex.
+    rounding: f64,
+    /// The facets that the last `start` or `insert` made.
+    pub(crate) fresh: Vec<u32>,
+    free: Vec<u32>,
+    visible: Vec<u32>,
+    border: Vec<Link>,
+    table: Vec<Slot>,
+    epoch: u32,
+}
+
+impl Polytope {
+    /// Begins with a simplex of seven affinely independent points.
+    pub(crate) fn start(&mut self, points: &[V6; 7], tags: &[u32; 7]) {
+        self.vertices.clear();
+        self.vertices.extend_from_slice(points);
+        self.tags.clear();
+        self.tags.extend_from_slice(tags);
+        self.facets.clear();
+        self.keys.clear();
+        self.free.clear();
+        self.fresh.clear();
+        self.created = 0;
+        self.rounding = 0.0;
+        points.iter().for_each(|p| self.widen(p));
+        self.epoch = 0;
+        self.table.iter_mut().for_each(|s| s.epoch = 0);
+        for (omitted, opposite) in points.iter().enumerate() {
+            let vertices: [u16; 6] =
+                std::array::from_fn(|i| (if i < omitted { i } else { i + 1 }) as u16);
+            let mut plane = self.plane_through(&vertices);
+            if plane.height(opposite) > 0.0 {
+                plane = plane.flipped();
+            }
+            // Across the ridge that also omits `other` lies the facet that omits `other`.
+            let links = vertices.map(|other| {
+                let other = other as usize;
+                let slot = if omitted < other {
+                    omitted
+                } else {
+                    omitted - 1
+                };
+                Link::new(other as u32, slot)
+            });
+            self.push(Facet {
+                plane,
+                height: 0.0,
+                epoch: 0,
+                vertices,
+                links,
+                settled: false,
+            });
+        }
+    }
+
+    /// The facet with the smallest offset.
+    pub(crate) fn nearest(&self) -> usize {
+        let mut best = (0, f64::INFINITY);
+        for (facet, &key) in self.keys.iter().enumerate() {
+            if key < best.1 {
+                best = (facet, key);
+            }
+        }
+        best.0
+    }
+
+    /// The numbers of the facets of the present surface.
+    pub(crate) fn alive(&self) -> impl Iterator<Item = usize> {
+        (0..self.facets.len()).filter(|&f| self.keys[f] < f64::INFINITY)
+    }
+
+    /// The vertices of a facet.
+    pub(crate) fn corners(&self, facet: usize) -> [V6; 6] {
+        self.facets[facet]
+            .vertices
+            .map(|v| self.vertices[v as usize])
+    }
+
+    /// Whether `point` is, to the last bit, a vertex already.
+    pub(crate) fn has_vertex(&self, point: &V6) -> bool {
+        self.vertices.iter().any(|v| v == point)
+    }
+
+    /// Replaces the plane of a facet, which then counts as settled.
+    pub(crate) fn settle(&mut self, facet: usize, plane: Plane) {
+        self.facets[facet].plane = plane;
+        self.facets[facet].settled = true;
+        self.keys[facet] = plane.offset;
+    }
+
+    /// Adds a vertex that lies above facet `seed` by more than `tolerance`.
+    ///
+    /// Facets below which the point lies by no more than the tolerance stay. Returns false, with
+    /// the surface unchanged, if no facet would be left to join the vertex to.
+    pub(crate) fn insert(&mut self, point: &V6, tag: u32, seed: usize, tolerance: f64) -> bool {
+        self.flood(point, seed, tolerance);
+        if self.border.is_empty() || self.vertices.len() > MAX_VERTICES {
+            return false;
+        }
+        let apex = self.vertices.len() as u16;
+        self.vertices.push(*point);
+        self.tags.push(tag);
+        self.widen(point);
+        self.fresh.clear();
+        self.clear_table();
+        for i in 0..self.border.len() {
+            self.raise(self.border[i], apex);
+        }
+        for &facet in &self.visible {
+            self.keys[facet as usize] = f64::INFINITY;
+        }
+        self.free.extend_from_slice(&self.visible);
+        true
+    }
+
+    /// Collects the facets that see `point` and the ridges around them.
+    fn flood(&mut self, point: &V6, seed: usize, tolerance: f64) {
+        self.epoch += 1;
+        let epoch = self.epoch;
+        self.visible.clear();
+        self.border.clear();
+        self.visible.push(seed as u32);
+        let first = &mut self.facets[seed];
+        first.epoch = epoch;
+        first.height = first.plane.height(point).max(tolerance * 1.5);
+        let mut next = 0;
+        while next < self.visible.len() {
+            let facet = self.visible[next];
+            next += 1;
+            for slot in 0..6 {
+                let across = self.facets[facet as usize].links[slot].facet();
+                let other = &mut self.facets[across];
+                if other.epoch != epoch {
+                    other.epoch = epoch;
+                    other.height = other.plane.height(point);
+                    if other.height > tolerance {
+                        self.visible.push(across as u32);
+                    }
+                }
+                if other.height <= tolerance {
+                    self.border.push(Link::new(facet, slot));
+                }
+            }
+        }
+    }
+
+    /// Makes the facet of `apex` over one border ridge and links it.
+    fn raise(&mut self, ridge: Link, apex: u16) {
+        let lower = &self.facets[ridge.facet()];
+        let beyond = lower.links[ridge.slot()];
+        let mut vertices = [apex; 6];
+        for (i, v) in vertices.iter_mut().take(5).enumerate() {
+            *v = lower.vertices[if i < ridge.slot() { i } else { i + 1 }];
+        }
+        let plane = match pencil(lower, &self.facets[beyond.facet()], self.rounding) {
+            Some(plane) => plane,
+            None => self.direct(&vertices, lower.vertices[ridge.slot()]),
+        };
+        let mut links = [Link::NONE; 6];
+        links[5] = beyond;
+        let facet = self.push(Facet {
+            plane,
+            height: 0.0,
+            epoch: 0,
+            vertices,
+            links,
+            settled: false,
+        });
+        self.facets[beyond.facet()].links[beyond.slot()] = Link::new(facet, 5);
+        for slot in 0..5 {
+            self.join(facet, slot, &vertices);
+        }
+    }
+
+    /// Links ridge `slot` of a new facet with its twin, or leaves it in the table for the twin.
+    fn join(&mut self, facet: u32, slot: usize, vertices: &[u16; 6]) {
+        // The ridge holds the new vertex and four others: 16 bits each make the whole key.
+        let mut key = 0u64;
+        for (i, &v) in vertices[..5].iter().enumerate() {
+            if i != slot {
+                key = key << 16 | u64::from(v);
+            }
+        }
+        let mask = self.table.len() - 1;
+        let mut at = (key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32) as usize & mask;
+        let link = Link::new(facet, slot);
+        loop {
+            let entry = &mut self.table[at];
+            if entry.epoch != self.epoch {
+                *entry = Slot {
+                    key,
+                    epoch: self.epoch,
+                    link,
+                };
+                return;
+            }
+            if entry.key == key && entry.link != Link::NONE {
+                let twin = entry.link;
+                entry.link = Link::NONE;
+                self.facets[twin.facet()].links[twin.slot()] = link;
+                self.facets[facet as usize].links[slot] = twin;
+                return;
+            }
+            at = (at + 1) & mask;
+        }
+    }
+
+    /// Room for every ridge of the new facets at a load of at most one half.
+    fn clear_table(&mut self) {
+        let need = (5 * self.border.len()).next_power_of_two();
+        if self.table.len() < need {
+            let empty = Slot {
+                key: 0,
+                epoch: 0,
+                link: Link::NONE,
+            };
+            self.table.resize(2 * need, empty);
+        }
+    }
+
+    /// The plane through six vertices with `inner` below it.
+    fn direct(&self, vertices: &[u16; 6], inner: u16) -> Plane {
+        let plane = self.plane_through(vertices);
+        if plane.height(&self.vertices[inner as usize]) > 0.0 {
+            plane.flipped()
+        } else {
+            plane
+        }
+    }
+
+    fn plane_through(&self, vertices: &[u16; 6]) -> Plane {
+        Plane::through(&vertices.map(|v| self.vertices[v as usize]))
+    }
+
+    fn widen(&mut self, point: &V6) {
+        self.rounding = self.rounding.max(4.0 * f64::EPSILON * norm(point));
+    }
+
+    fn push(&mut self, facet: Facet) -> u32 {
+        self.created += 1;
+        let key = facet.plane.offset;
+        let at = match self.free.pop() {
+            Some(at) => {
+                self.facets[at as usize] = facet;
+                self.keys[at as usize] = key;
+                at
+            }
+            None => {
+                self.facets.push(facet);
+                self.keys.push(key);
+                self.facets.len() as u32 - 1
+            }
+        };
+        self.fresh.push(at);
+        at
+    }
+}
+
+/// The plane of the pencil of two facets that contains the point whose heights they hold.
+///
+/// None where the pencil says too little: a point (nearly) on or above the hidden facet that is
+/// hardly above the visible one.
+fn pencil(visible: &Facet, hidden: &Facet, rounding: f64) -> Option<Plane> {
+    let (a, b) = (visible.height, -hidden.height);
+    if b < 0.0 && -b > 1e-2 * a {
+        return None;
+    }
+    let n = add_scaled(&scale(&hidden.plane.normal, a), b, &visible.plane.normal);
+    let length = norm(&n);
+    if length <= 1e-3 * (a + b.abs()) {
+        return None;
+    }
+    let inverse = 1.0 / length;
+    let reach = a + b.abs();
+    let residual = a * hidden.plane.residual + b.abs() * visible.plane.residual + reach * rounding;
+    Some(Plane {
+        normal: scale(&n, inverse),
+        offset: inverse * (a * hidden.plane.offset + b * visible.plane.offset),
+        residual: inverse * residual,
+    })
+}
+
+/// The simplex volume |det(p_i − apex)| / 6! of a facet and a point.
+pub(crate) fn cone_volume(corners: &[V6; 6], apex: &V6) -> f64 {
+    let m = nalgebra::Matrix6::from_fn(|i, j| corners[j][i] - apex[i]);
+    m.determinant().abs() / 720.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::plane::dot;
+    use super::*;
+
+    fn cross_polytope() -> Polytope {
+        let mut points = [[0.0; 6]; 7];
+        for (k, p) in points.iter_mut().take(6).enumerate() {
+            p[k] = 1.0;
+        }
+        points[6] = [-0.1; 6];
+        let mut polytope = Polytope::default();
+        polytope.start(&points, &[0, 1, 2, 3, 4, 5, 6]);
+        for k in 0..6 {
+            let mut p = [0.0; 6];
+            p[k] = -1.0;
+            let seed = polytope
+                .alive()
+                .find(|&f| polytope.facets[f].plane.height(&p) > 1e-12);
+            assert!(polytope.insert(&p, 7, seed.unwrap(), 1e-12));
+        }
+        polytope
+    }
+
+    #[test]
+    fn grows_to_the_cross_polytope() {
+        let polytope = cross_polytope();
+        let facets: Vec<usize> = polytope.alive().collect();
+        assert_eq!(facets.len(), 64);
+        let offset = 1.0 / 6.0_f64.sqrt();
+        for &f in &facets {
+            assert!((polytope.facets[f].plane.offset - offset).abs() <= 1e-14);
+        }
+        let volume: f64 = facets
+            .iter()
+            .map(|&f| cone_volume(&polytope.corners(f), &[0.0; 6]))
+            .sum();
+        assert!((volume - 64.0 / 720.0).abs() <= 1e-14);
+    }
+
+    #[test]
+    fn links_are_mutual_and_share_a_ridge() {
+        let polytope = cross_polytope();
+        for f in polytope.alive() {
+            for slot in 0..6 {
+                let link = polytope.facets[f].links[slot];
+                let back = polytope.facets[link.facet()].links[link.slot()];
+                assert_eq!(back, Link::new(f as u32, slot));
+                let ridge = |f: usize, slot: usize| {
+                    let mut v = polytope.facets[f].vertices.to_vec();
+                    v.remove(slot);
+                    v
+                };
+                assert_eq!(ridge(f, slot), ridge(link.facet(), link.slot()));
+                assert!(dot(&polytope.facets[f].plane.normal, &polytope.corners(f)[0]) > 0.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Best-first expansion: the largest origin-centred ball in a hull, without the whole hull.
+//!
+//! A polytope of support points grows where its boundary is nearest to the origin. The offset of
+//! its nearest facet is a lower bound of the ball's radius, the support function along that
+//! facet's normal an upper one; the search ends when they meet.
+
+use super::min_norm::{Corral, Effort, Nearest, PointList, Support};
+use super::plane::{Plane, V6, add_scaled, dot, norm, scale};
+use super::polytope::{MAX_VERTICES, Polytope};
+use super::simplex::{Flat, Simplex, complete};
+
+/// The result of a search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Ball {
+    /// The origin is not inside: the support function is not positive along `direction`.
+    Open { direction: V6 },
+    /// The radius lies in [lower, upper]; the hull is supported along `direction` at `upper`.
+    Closed {
+        lower: f64,
+        upper: f64,
+        direction: V6,
+        /// The nearest facet of the inner polytope, whose plane `lower` comes from.
+        facet: usize,
+    },
+}
+
+/// Scratch of a search.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Search {
+    pub(crate) polytope: Polytope,
+    pub(crate) corral: Corral,
+}
+
+/// Heights below this part of the longest point are rounding.
+pub(crate) const RELATIVE_TOLERANCE: f64 = 1e-12;
+
+impl Search {
+    /// The largest origin-centred ball in the hull that `source` supports.
+    ///
+    /// `toward` is any direction in which points of the hull lie, `reach` the length of the longest
+    /// of them, `gap` the width of the interval at which to stop.
+    pub(crate) fn ball(
+        &mut self,
+        source: &mut impl Support,
+        toward: &V6,
+        reach: f64,
+        gap: f64,
+    ) -> Ball {
+        let tolerance = RELATIVE_TOLERANCE * reach;
+        let found = self
+            .corral
+            .nearest(source, toward, Effort::Separate, tolerance);
+        if let Nearest::Outside { point, gap } = found {
+            let separated = gap.is_infinite() || norm(&point) - gap > tolerance;
+            if separated {
+                return Ball::Open {
+                    direction: scale(&point, -1.0 / norm(&point)),
+                };
+            }
+        }
+        match complete(&self.corral, source, tolerance) {
+            Err(Flat { normal }) => Ball::Open { direction: normal },
+            Ok(Simplex { points, tags }) => {
+                self.polytope.start(&points, &tags);
+                self.grow(source, tolerance, gap)
+            }
+        }
+    }
+
+    fn grow(&mut self, source: &mut impl Support, tolerance: f64, gap: f64) -> Ball {
+        let mut upper = f64::INFINITY;
+        let mut direction = [0.0; 6];
+        loop {
+            let facet = self.polytope.nearest();
+            let plane = self.polytope.facets[facet].plane;
+            let (point, tag) = source.support(&plane.normal);
+            let height = dot(&plane.normal, &point);
+            if height < upper {
+                (upper, direction) = (height, plane.normal);
+            }
+            if upper <= tolerance {
+                return Ball::Open { direction };
+            }
+            let lower = plane.offset - plane.residual;
+            let done = upper - lower <= gap.max(tolerance) || height - plane.offset <= tolerance;
+            if !done && self.expand(facet, &point, tag, tolerance) {
+                continue;
+            }
+            if lower <= tolerance {
+                return Ball::Open { direction };
+            }
+            return Ball::Closed {
+                lower: lower.min(upper),
+                upper,
+                direction,
+                facet,
+            };
+        }
+    }
+
+    /// Adds the point above the facet; false when nothing more can be done there.
+    fn expand(&mut self, facet: usize, point: &V6, tag: u32, tolerance: f64) -> bool {
+        let polytope = &mut self.polytope;
+        if polytope.vertices.len() < MAX_VERTICES && !polytope.has_vertex(point) {
+            return polytope.insert(point, tag, facet, tolerance);
+        }
+        // A thin facet whose plane rounding has tilted below a vertex of its own neighbourhood:
+        // the plane orthogonal to the facet's point nearest to the origin bounds it best.
+        if polytope.facets[facet].settled {
+            return false;
+        }
+        let plane = nearest_plane(&polytope.corners(facet));
+        match plane {
+            Some(plane) if plane.offset > polytope.keys[facet] => polytope.settle(facet, plane),
+            _ => {
+                let plane = polytope.facets[facet].plane;
+                polytope.settle(facet, plane);
+            }
+        }
+        true
+    }
+}
+
+/// The plane that keeps six points farthest from the origin: orthogonal to the nearest point.
+fn nearest_plane(corners: &[V6; 6]) -> Option<Plane> {
+    let centre = corners.iter().fold([0.0; 6], |s, p| add_scaled(&s, 1.0, p));
+    let reach = corners.iter().map(norm).fold(0.0, f64::max);
+    let mut corral = Corral::default();
+    let found = corral.nearest(
+        &mut PointList(corners),
+        &centre,
+        Effort::Converge,
+        1e-14 * reach,
+    );
+    let Nearest::Outside { point, .. } = found else {
+        return None;
+    };
+    let normal = scale(&point, 1.0 / norm(&point));
+    let heights = corners.map(|p| dot(&normal, &p));
+    Some(Plane {
+        normal,
+        offset: heights.iter().copied().fold(f64::INFINITY, f64::min),
+        residual: 4.0 * f64::EPSILON * reach,
+    })
+}

@@ -1,0 +1,27 @@
+//! Grasps as contacts, wrenches and quality: from contact points and normals to a number.
+//!
+//! The crate knows no surface, file or thread. A [`Grasp`] is a list of [`Contact`]s and a centre;
+//! a [`Convention`] says how they become [`Wrench`]es; [`epsilon`] and [`volume`] measure the hull
+//! of those.
+
+mod closure;
+mod contact;
+mod convention;
+mod distance;
+mod friction;
+pub mod hull;
+mod linear;
+mod quality;
+mod wrench;
+
+pub use closure::{force_closed, wrenches_force_closed};
+pub use contact::{Contact, ContactError, Grasp};
+pub use convention::{
+    CentreRule, Convention, ConventionError, EdgeNorm, Edges, TorqueLength, UnknownConvention,
+};
+pub use distance::{ContactCounts, distance};
+pub use friction::{cone_edges, cone_edges_from, tangent};
+pub use quality::{
+    Epsilon, QualityError, Workspace, epsilon, epsilon_of_wrenches, epsilon_quality, volume,
+};
+pub use wrench::{Wrench, WrenchError, wrench, wrenches, wrenches_into, wrenches_with_tangents};

@@ -1,0 +1,11 @@
+//! Distances between the parts of a hand and to the object; the only user of parry.
+
+mod object;
+mod piece;
+mod self_distance;
+mod tree;
+
+pub use object::{CollisionObject, Gap, ObjectError, Precision};
+pub use piece::GeometryError;
+pub(crate) use piece::{ConvexPiece, LinkShape, check_hull};
+pub(crate) use self_distance::first_close_pair;

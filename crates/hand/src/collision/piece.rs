@@ -1,0 +1,283 @@
+//! One convex piece of a hand: bounds in closed form, and parry's shape for exact queries.
+
+use nalgebra::{Isometry3, Point3, UnitQuaternion, UnitVector3, Vector3};
+use parry3d_f64::math::{Pose, Vector};
+use parry3d_f64::query;
+use parry3d_f64::shape::{Ball, Capsule, ConvexPolyhedron, Cuboid, Cylinder, Shape, Triangle};
+use thiserror::Error;
+
+use crate::model::{Geometry, LinkGeometry};
+
+/// Extents of a hull below this (metres) count as flat.
+const LEAST_HULL_THICKNESS: f64 = 1e-6;
+
+/// Why geometry cannot take part in collision tests.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum GeometryError {
+    /// A mesh without volume.
+    #[error("the convex hull of the mesh is flat or empty")]
+    FlatHull,
+}
+
+#[derive(Debug, Clone)]
+enum Form {
+    Cuboid(Cuboid),
+    /// Along y, as parry has it.
+    Cylinder(Cylinder),
+    /// Along y.
+    Capsule(Capsule),
+    Ball(Ball),
+    /// The hull and half the extents of its bounding box, which is centred.
+    Hull(Box<ConvexPolyhedron>, Vector3<f64>),
+}
+
+/// A convex piece in its own frame, placed in a link.
+#[derive(Debug, Clone)]
+pub(crate) struct ConvexPiece {
+    pub(crate) link_from_piece: Isometry3<f64>,
+    form: Form,
+    /// Radius of a sphere about the origin of the piece that holds it.
+    pub(crate) radius: f64,
+}
+
+impl ConvexPiece {
+    pub(crate) fn new(placed: &LinkGeometry) -> Result<Self, GeometryError> {
+        let along_y = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::FRAC_PI_2);
+        let mut link_from_piece = placed.link_from_geometry;
+        let (form, radius) = match &placed.geometry {
+            Geometry::Box { half_extents } => (
+                Form::Cuboid(Cuboid::new(to_parry(half_extents))),
+                half_extents.norm(),
+            ),
+            &Geometry::Cylinder {
+                radius,
+                half_length,
+            } => {
+                link_from_piece *= along_y;
+                (
+                    Form::Cylinder(Cylinder::new(half_length, radius)),
+                    radius.hypot(half_length),
+                )
+            }
+            &Geometry::Capsule {
+                radius,
+                half_length,
+            } => {
+                link_from_piece *= along_y;
+                (
+                    Form::Capsule(Capsule::new_y(half_length, radius)),
+                    radius + half_length,
+                )
+            }
+            &Geometry::Sphere { radius } => (Form::Ball(Ball::new(radius)), radius),
+            Geometry::Hull { points } => {
+                let (centre, half) = bounding_box(points);
+                let hull = hull(points, &centre)?;
+                link_from_piece *= nalgebra::Translation3::from(centre.coords);
+                let radius = hull.points().iter().map(|p| p.length()).fold(0.0, f64::max);
+                (Form::Hull(Box::new(hull), half), radius)
+            }
+        };
+        Ok(ConvexPiece {
+            link_from_piece,
+            form,
+            radius,
+        })
+    }
+
+    /// Lower and upper bound of the signed distance from a point (piece frame) to the piece;
+    /// equal but for hulls, for which the bounding box gives the lower one.
+    pub(crate) fn distance_bounds(&self, p: &Vector3<f64>) -> (f64, f64) {
+        let exact = match &self.form {
+            Form::Cuboid(c) => box_distance(p, &from_parry(c.half_extents)),
+            Form::Cylinder(c) => {
+                let radial = p.x.hypot(p.z) - c.radius;
+                let axial = p.y.abs() - c.half_height;
+                radial.max(axial).min(0.0) + radial.max(0.0).hypot(axial.max(0.0))
+            }
+            Form::Capsule(c) => {
+                let half = c.segment.b.y.abs();
+                Vector3::new(p.x, (p.y.abs() - half).max(0.0), p.z).norm() - c.radius
+            }
+            Form::Ball(b) => p.norm() - b.radius,
+            Form::Hull(_, half) => return (box_distance(p, half), f64::INFINITY),
+        };
+        (exact, exact)
+    }
+
+    /// Support function: the greatest n·x over the piece, n a direction of the piece frame.
+    pub(crate) fn support(&self, n: &Vector3<f64>) -> f64 {
+        match &self.form {
+            Form::Cuboid(c) => n.abs().dot(&from_parry(c.half_extents)),
+            Form::Cylinder(c) => c.half_height * n.y.abs() + c.radius * n.x.hypot(n.z),
+            Form::Capsule(c) => c.segment.b.y.abs() * n.y.abs() + c.radius * n.norm(),
+            Form::Ball(b) => b.radius * n.norm(),
+            Form::Hull(hull, _) => {
+                let n = to_parry(n);
+                hull.points()
+                    .iter()
+                    .map(|p| n.dot(*p))
+                    .fold(f64::NEG_INFINITY, f64::max)
+            }
+        }
+    }
+
+    fn shape(&self) -> &dyn Shape {
+        match &self.form {
+            Form::Cuboid(s) => s,
+            Form::Cylinder(s) => s,
+            Form::Capsule(s) => s,
+            Form::Ball(s) => s,
+            Form::Hull(s, _) => s.as_ref(),
+        }
+    }
+
+    /// Exact distance to a triangle in the piece frame and the closest point of the
+    /// triangle; (0, none) where they meet.
+    pub(crate) fn triangle_distance(
+        &self,
+        corners: &[Vector3<f64>; 3],
+    ) -> (f64, Option<Vector3<f64>>) {
+        let [a, b, c] = corners.each_ref().map(to_parry);
+        let triangle = Triangle::new(a, b, c);
+        let found = query::closest_points(
+            &Pose::IDENTITY,
+            self.shape(),
+            &Pose::IDENTITY,
+            &triangle,
+            f64::MAX,
+        );
+        match found {
+            Ok(query::ClosestPoints::WithinMargin(p, q)) => {
+                ((p - q).length(), Some(from_parry(q)))
+            }
+            _ => (0.0, None),
+        }
+    }
+
+    /// The point of the piece closest to a point outside it, both in the piece frame.
+    pub(crate) fn closest_point(&self, p: &Vector3<f64>) -> Vector3<f64> {
+        from_parry(self.shape().project_local_point(to_parry(p), true).point)
+    }
+
+    /// Distance to another piece, 0 where they meet.
+    pub(crate) fn piece_distance(
+        &self,
+        world_from_self: &Isometry3<f64>,
+        other: &ConvexPiece,
+        world_from_other: &Isometry3<f64>,
+    ) -> f64 {
+        query::distance(
+            &pose(world_from_self),
+            self.shape(),
+            &pose(world_from_other),
+            other.shape(),
+        )
+        .map_or(0.0, |d| d.distance)
+    }
+}
+
+/// The pieces of one link and a sphere around them.
+#[derive(Debug, Clone)]
+pub(crate) struct LinkShape {
+    pub(crate) pieces: Vec<ConvexPiece>,
+    /// Centre of the sphere in the link frame.
+    pub(crate) centre: Point3<f64>,
+    pub(crate) radius: f64,
+}
+
+impl LinkShape {
+    pub(crate) fn new(pieces: Vec<ConvexPiece>) -> Self {
+        let count = pieces.len().max(1) as f64;
+        let centre = pieces
+            .iter()
+            .map(|p| p.link_from_piece.translation.vector)
+            .sum::<Vector3<f64>>()
+            / count;
+        let radius = pieces
+            .iter()
+            .map(|p| (p.link_from_piece.translation.vector - centre).norm() + p.radius)
+            .fold(0.0, f64::max);
+        LinkShape {
+            pieces,
+            centre: Point3::from(centre),
+            radius,
+        }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.pieces.is_empty()
+    }
+
+    /// A bound on the distance of any point of the link from the link's origin.
+    pub(crate) fn reach(&self) -> f64 {
+        self.pieces
+            .iter()
+            .map(|p| p.link_from_piece.translation.vector.norm() + p.radius)
+            .fold(0.0, f64::max)
+    }
+}
+
+/// Checks that the vertices of a mesh span a convex hull with volume.
+pub(crate) fn check_hull(points: &[Point3<f64>]) -> Result<(), GeometryError> {
+    let (centre, _) = bounding_box(points);
+    hull(points, &centre).map(|_| ())
+}
+
+fn hull(points: &[Point3<f64>], centre: &Point3<f64>) -> Result<ConvexPolyhedron, GeometryError> {
+    if thickness(points, centre) < LEAST_HULL_THICKNESS {
+        return Err(GeometryError::FlatHull);
+    }
+    let centred: Vec<Vector> = points.iter().map(|p| to_parry(&(p - centre))).collect();
+    ConvexPolyhedron::from_convex_hull(&centred).ok_or(GeometryError::FlatHull)
+}
+
+/// Root mean square extent along the thinnest principal axis.
+fn thickness(points: &[Point3<f64>], centre: &Point3<f64>) -> f64 {
+    let count = points.len().max(1) as f64;
+    let mean = points.iter().map(|p| p - centre).sum::<Vector3<f64>>() / count;
+    let mut covariance = nalgebra::Matrix3::zeros();
+    for p in points {
+        let d = p - centre - mean;
+        covariance += d * d.transpose() / count;
+    }
+    let least = covariance.symmetric_eigenvalues().min();
+    if least > 0.0 { least.sqrt() } else { 0.0 }
+}
+
+fn bounding_box(points: &[Point3<f64>]) -> (Point3<f64>, Vector3<f64>) {
+    let Some(first) = points.first() else {
+        return (Point3::origin(), Vector3::zeros());
+    };
+    let (low, high) = points.iter().fold((*first, *first), |(low, high), p| {
+        (low.inf(p), high.sup(p))
+    });
+    (nalgebra::center(&low, &high), (high - low) / 2.0)
+}
+
+fn box_distance(p: &Vector3<f64>, half: &Vector3<f64>) -> f64 {
+    let d = p.abs() - half;
+    d.map(|c| c.max(0.0)).norm() + d.max().min(0.0)
+}
+
+/// parry's vector of a nalgebra one.
+pub(crate) fn to_parry(v: &Vector3<f64>) -> Vector {
+    Vector::new(v.x, v.y, v.z)
+}
+
+fn from_parry(v: Vector) -> Vector3<f64> {
+    Vector3::new(v.x, v.y, v.z)
+}
+
+fn pose(p: &Isometry3<f64>) -> Pose {
+    let q = p.rotation.coords;
+    Pose::from_parts(
+        to_parry(&p.translation.vector),
+        parry3d_f64::math::Rotation::from_xyzw(q.x, q.y, q.z, q.w),
+    )
+}
+
+/// A direction with a fallback for vanishing vectors.
+pub(crate) fn direction_or_z(v: &Vector3<f64>) -> UnitVector3<f64> {
+    UnitVector3::try_new(*v, 0.0).unwrap_or(Vector3::z_axis())
+}

@@ -1,0 +1,33 @@
+//! The hand that comes with the program: a simplified Schunk SDH.
+
+use thiserror::Error;
+
+use crate::hand::{Hand, HandError};
+use crate::hand_spec::{HandSpec, SpecTextError};
+use crate::urdf::{UrdfError, load_urdf};
+
+/// The URDF of the built-in hand.
+pub const SDH_URDF: &str = include_str!("../../../fixtures/sdh/sdh.urdf");
+/// The spec of the built-in hand.
+pub const SDH_SPEC: &str = include_str!("../../../fixtures/sdh/sdh.toml");
+
+/// Why a hand could not be had from its two texts.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum LoadError {
+    /// The URDF was refused.
+    #[error(transparent)]
+    Urdf(#[from] UrdfError),
+    /// The spec could not be read.
+    #[error(transparent)]
+    SpecText(#[from] SpecTextError),
+    /// The spec does not fit the URDF.
+    #[error(transparent)]
+    Hand(#[from] HandError),
+}
+
+/// The Schunk SDH with our simplified collision model: three fingers, seven driven
+/// joints, pre-shapes "parallel" and "spread" (paper, Sec. IV-C).
+pub fn schunk_sdh() -> Result<Hand, LoadError> {
+    let model = load_urdf(SDH_URDF)?;
+    Ok(Hand::new(model, &HandSpec::from_toml(SDH_SPEC)?)?)
+}

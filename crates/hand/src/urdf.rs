@@ -1,0 +1,320 @@
+//! A [`HandModel`] from a URDF text; the only user of urdf-rs.
+//!
+//! The reader accepts much that is no hand (links that do not exist, duplicate names,
+//! NaN sizes), so everything is checked here and refused by name.
+
+mod guard;
+mod tree;
+
+use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
+use thiserror::Error;
+
+use crate::mesh_file::{MeshFileError, mesh_vertices};
+use crate::model::{Geometry, HandModel, LinkGeometry};
+pub use guard::{MAX_URDF_BYTES, MAX_URDF_DEPTH, MAX_URDF_ELEMENTS};
+
+/// The largest number of links or of joints accepted.
+pub const MAX_LINKS: usize = 512;
+/// The largest number of collision pieces a link accepted.
+pub const MAX_PIECES: usize = 64;
+/// The largest length (origin, size of geometry) accepted, in metres.
+pub const MAX_LENGTH_M: f64 = 10.0;
+
+/// Why a URDF was refused.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum UrdfError {
+    /// The text is too long.
+    #[error("the URDF has {bytes} bytes, more than {limit}")]
+    TooLarge {
+        /// Its length.
+        bytes: usize,
+        /// The limit.
+        limit: usize,
+    },
+    /// Elements nest too deeply.
+    #[error("elements nest deeper than {limit} at byte {byte}")]
+    TooDeep {
+        /// Where.
+        byte: usize,
+        /// The limit.
+        limit: usize,
+    },
+    /// There are too many of something.
+    #[error("{count} {what}, more than {limit}")]
+    TooMany {
+        /// Of what.
+        what: &'static str,
+        /// How many.
+        count: usize,
+        /// The limit.
+        limit: usize,
+    },
+    /// Not well-formed XML.
+    #[error("not XML at byte {byte}: {what}")]
+    NotXml {
+        /// Where.
+        byte: usize,
+        /// What is wrong.
+        what: &'static str,
+    },
+    /// A document type (and so possibly entities) is declared.
+    #[error("a document type or entity is declared at byte {byte}; URDFs need none")]
+    Doctype {
+        /// Where.
+        byte: usize,
+    },
+    /// The URDF reader refused it.
+    #[error("not a URDF: {0}")]
+    Parse(String),
+    /// No link at all.
+    #[error("the URDF has no links")]
+    NoLinks,
+    /// Two links of one name.
+    #[error("two links are named '{0}'")]
+    DuplicateLink(String),
+    /// Two joints of one name.
+    #[error("two joints are named '{0}'")]
+    DuplicateJoint(String),
+    /// A joint names a link that does not exist.
+    #[error("joint '{joint}' names the link '{link}', which does not exist")]
+    UnknownLink {
+        /// The joint.
+        joint: String,
+        /// The missing link.
+        link: String,
+    },
+    /// A link is the child of two joints.
+    #[error("link '{link}' is the child of both '{first}' and '{second}'")]
+    TwoParents {
+        /// The link.
+        link: String,
+        /// One joint.
+        first: String,
+        /// The other joint.
+        second: String,
+    },
+    /// The links form no single tree.
+    #[error("the links are not one tree: {roots} links have no parent, and link '{link}' hangs on no root or on a second one")]
+    NotATree {
+        /// Number of links without a parent.
+        roots: usize,
+        /// A link that is not under the first root.
+        link: String,
+    },
+    /// A number is not finite or absurdly large.
+    #[error("{what} of '{item}' is {value}")]
+    Number {
+        /// The link or joint.
+        item: String,
+        /// Which number.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A moving joint has a zero axis.
+    #[error("joint '{0}' has a zero axis")]
+    ZeroAxis(String),
+    /// A joint's limits are reversed.
+    #[error("joint '{joint}' has limits {lower} .. {upper}")]
+    Limits {
+        /// The joint.
+        joint: String,
+        /// Lower limit.
+        lower: f64,
+        /// Upper limit.
+        upper: f64,
+    },
+    /// A joint of a kind that hands do not have.
+    #[error("joint '{joint}' is {kind}; fixed, revolute, continuous and prismatic joints are known")]
+    JointKind {
+        /// The joint.
+        joint: String,
+        /// Its kind.
+        kind: String,
+    },
+    /// A mimic joint follows something that cannot be followed.
+    #[error("joint '{joint}' mimics '{of}', which {why}")]
+    Mimic {
+        /// The joint.
+        joint: String,
+        /// The followed joint.
+        of: String,
+        /// What is wrong with it.
+        why: &'static str,
+    },
+    /// A collision mesh could not be had.
+    #[error("collision mesh '{file}' of link '{link}': {reason}")]
+    Mesh {
+        /// The link.
+        link: String,
+        /// The file name in the URDF.
+        file: String,
+        /// What went wrong.
+        reason: String,
+    },
+}
+
+/// Reads a hand whose collision geometry is made of primitives; meshes are refused by name.
+///
+/// Errors: see [`UrdfError`]. Linear in the text.
+pub fn load_urdf(text: &str) -> Result<HandModel, UrdfError> {
+    load_urdf_with_meshes(text, |_| {
+        Err::<Vec<u8>, _>("this loader was given no meshes".to_string())
+    })
+}
+
+/// Reads a hand; `mesh_bytes` returns the content of a mesh file by its name in the URDF.
+///
+/// Each collision mesh (STL or OBJ, recognised by content) becomes the convex hull of its
+/// vertices. The caller decides which names it resolves and where.
+pub fn load_urdf_with_meshes<E: std::fmt::Display>(
+    text: &str,
+    mesh_bytes: impl Fn(&str) -> Result<Vec<u8>, E>,
+) -> Result<HandModel, UrdfError> {
+    guard::check_text(text)?;
+    let robot =
+        urdf_rs::read_from_string(text).map_err(|e| UrdfError::Parse(e.to_string()))?;
+    check_counts(&robot)?;
+    let resolve = |link: &str, file: &str| {
+        let bytes = mesh_bytes(file).map_err(|e| mesh_error(link, file, e.to_string()))?;
+        mesh_vertices(&bytes).map_err(|e: MeshFileError| mesh_error(link, file, e.to_string()))
+    };
+    let mut geometry = Vec::with_capacity(robot.links.len());
+    for link in &robot.links {
+        geometry.push(link_geometry(link, &resolve)?);
+    }
+    tree::build(&robot, geometry)
+}
+
+fn mesh_error(link: &str, file: &str, reason: String) -> UrdfError {
+    UrdfError::Mesh {
+        link: link.to_string(),
+        file: file.to_string(),
+        reason,
+    }
+}
+
+fn check_counts(robot: &urdf_rs::Robot) -> Result<(), UrdfError> {
+    if robot.links.is_empty() {
+        return Err(UrdfError::NoLinks);
+    }
+    for (what, count, limit) in [
+        ("links", robot.links.len(), MAX_LINKS),
+        ("joints", robot.joints.len(), MAX_LINKS),
+    ] {
+        if count > limit {
+            return Err(UrdfError::TooMany { what, count, limit });
+        }
+    }
+    Ok(())
+}
+
+fn link_geometry(
+    link: &urdf_rs::Link,
+    resolve: &dyn Fn(&str, &str) -> Result<Vec<Point3<f64>>, UrdfError>,
+) -> Result<Vec<LinkGeometry>, UrdfError> {
+    if link.collision.len() > MAX_PIECES {
+        return Err(UrdfError::TooMany {
+            what: "collision pieces of one link",
+            count: link.collision.len(),
+            limit: MAX_PIECES,
+        });
+    }
+    link.collision
+        .iter()
+        .map(|piece| {
+            Ok(LinkGeometry {
+                link_from_geometry: isometry(&link.name, &piece.origin)?,
+                geometry: geometry(&link.name, &piece.geometry, resolve)?,
+            })
+        })
+        .collect()
+}
+
+fn geometry(
+    link: &str,
+    piece: &urdf_rs::Geometry,
+    resolve: &dyn Fn(&str, &str) -> Result<Vec<Point3<f64>>, UrdfError>,
+) -> Result<Geometry, UrdfError> {
+    let half = |what, length: f64| Ok(positive(link, what, length)? / 2.0);
+    Ok(match piece {
+        urdf_rs::Geometry::Box { size } => Geometry::Box {
+            half_extents: Vector3::new(
+                half("box size", size[0])?,
+                half("box size", size[1])?,
+                half("box size", size[2])?,
+            ),
+        },
+        urdf_rs::Geometry::Cylinder { radius, length } => Geometry::Cylinder {
+            radius: positive(link, "cylinder radius", *radius)?,
+            half_length: half("cylinder length", *length)?,
+        },
+        urdf_rs::Geometry::Capsule { radius, length } => Geometry::Capsule {
+            radius: positive(link, "capsule radius", *radius)?,
+            half_length: half("capsule length", *length)?,
+        },
+        urdf_rs::Geometry::Sphere { radius } => Geometry::Sphere {
+            radius: positive(link, "sphere radius", *radius)?,
+        },
+        urdf_rs::Geometry::Mesh { filename, scale } => {
+            let scale = vector(link, "mesh scale", &scale.map_or([1.0; 3], |s| s.0))?;
+            let points = resolve(link, filename)?
+                .iter()
+                .map(|p| Point3::from(p.coords.component_mul(&scale)))
+                .collect();
+            crate::collision::check_hull(&points)
+                .map_err(|e| mesh_error(link, filename, e.to_string()))?;
+            Geometry::Hull { points }
+        }
+    })
+}
+
+fn number(item: &str, what: &'static str, value: f64) -> Result<f64, UrdfError> {
+    if value.abs() <= MAX_LENGTH_M * 1e3 {
+        Ok(value)
+    } else {
+        Err(UrdfError::Number {
+            item: item.to_string(),
+            what,
+            value,
+        })
+    }
+}
+
+fn positive(item: &str, what: &'static str, value: f64) -> Result<f64, UrdfError> {
+    if value > 0.0 && value <= MAX_LENGTH_M {
+        Ok(value)
+    } else {
+        Err(UrdfError::Number {
+            item: item.to_string(),
+            what,
+            value,
+        })
+    }
+}
+
+fn vector(item: &str, what: &'static str, v: &[f64; 3]) -> Result<Vector3<f64>, UrdfError> {
+    for &value in v {
+        number(item, what, value)?;
+    }
+    Ok(Vector3::from(*v))
+}
+
+/// Pose from `xyz` and `rpy` (fixed axes: roll about x, then pitch about y, then yaw about z).
+fn isometry(item: &str, origin: &urdf_rs::Pose) -> Result<Isometry3<f64>, UrdfError> {
+    let xyz = vector(item, "origin xyz", &origin.xyz.0)?;
+    for &value in xyz.iter() {
+        if value.abs() > MAX_LENGTH_M {
+            return Err(UrdfError::Number {
+                item: item.to_string(),
+                what: "origin xyz",
+                value,
+            });
+        }
+    }
+    let rpy = vector(item, "origin rpy", &origin.rpy.0)?;
+    Ok(Isometry3::from_parts(
+        Translation3::from(xyz),
+        UnitQuaternion::from_euler_angles(rpy.x, rpy.y, rpy.z),
+    ))
+}

@@ -1,0 +1,21 @@
+//! Objects: clouds, meshes, smooth surfaces, and the space that the surfaces live in.
+//!
+//! Surfaces live in a centred frame, whose origin is the mean of the cloud (Sec. IV-A of the
+//! paper); [`fit::Fit`] keeps the way back to the frame of the cloud.
+
+pub mod embedding;
+pub mod fit;
+pub mod io;
+pub mod mass;
+pub mod noise;
+pub mod point_cloud;
+pub mod radial;
+pub mod space;
+pub mod surface;
+pub mod triangle_mesh;
+
+pub use fit::{Fit, FitError, FitSettings};
+pub use point_cloud::{CloudError, PointCloud};
+pub use radial::{RadialError, RadialShape};
+pub use surface::{Differential, Surface};
+pub use triangle_mesh::TriangleMesh;

@@ -1,0 +1,249 @@
+//! Members of M^rad: surfaces f(p) = r(p) p with r > 0 everywhere.
+
+use nalgebra::{Matrix3, Point3, UnitVector3, Vector3};
+use sph::bounds::{Range, certified_range};
+use sph::grid::RingGrid;
+use sph::{Basis, Coefficients, Direction};
+
+use crate::mass::{self, MassProperties};
+use crate::surface::{Differential, Surface};
+use crate::triangle_mesh::TriangleMesh;
+
+/// Points per half wave in the certificate; the first that decides is used.
+const OVERSAMPLING: [usize; 2] = [8, 16];
+
+/// Why a function is not the radius of a surface in M^rad.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RadialError {
+    /// Somewhere the radius is not positive.
+    #[error(
+        "the radial function reaches {seen:.6} m, so it is not in M^rad; a larger penalty, a lower degree or a better centre may help"
+    )]
+    NotPositive {
+        /// A value it takes.
+        seen: f64,
+    },
+    /// The radius was positive wherever it was looked at, but that is no proof.
+    #[error(
+        "cannot prove the radial function positive: at least {seen:.6} m on a grid, but only above {lower:.6} m for certain"
+    )]
+    Undecided {
+        /// Least value seen.
+        seen: f64,
+        /// Certified lower bound, not positive.
+        lower: f64,
+    },
+}
+
+/// A proved member of M^rad (Definition 3.1 of the paper): f(p) = r(p) p, r = Σ β_{lm} Y_{lm} > 0.
+///
+/// r is in metres, in the centred frame. A value of this type whose radius is not positive
+/// everywhere cannot be made.
+#[derive(Clone, Debug)]
+pub struct RadialShape {
+    coefficients: Coefficients,
+    basis: Basis,
+    range: Range,
+    mass: MassProperties,
+}
+
+impl RadialShape {
+    /// Certifies r > 0 on the whole sphere ([`certified_range`]) and computes the mass properties.
+    pub fn new(coefficients: Coefficients) -> Result<Self, RadialError> {
+        let range = certify(&coefficients)?;
+        Ok(Self::with_range(coefficients, range))
+    }
+
+    /// A shape whose range is already known, from the convexity of M^rad.
+    pub(crate) fn with_range(coefficients: Coefficients, range: Range) -> Self {
+        Self {
+            basis: Basis::new(coefficients.degree()),
+            mass: mass::radial(&coefficients),
+            coefficients,
+            range,
+        }
+    }
+
+    /// The round sphere of a radius in metres.
+    pub fn sphere(degree: usize, radius: f64) -> Result<Self, RadialError> {
+        Self::new(Coefficients::constant(degree, radius))
+    }
+
+    /// β.
+    pub fn coefficients(&self) -> &Coefficients {
+        &self.coefficients
+    }
+
+    /// L.
+    pub fn degree(&self) -> usize {
+        self.coefficients.degree()
+    }
+
+    /// Certified bounds (r_min, r_max): r_min ≤ r(p) ≤ r_max for every p, r_min > 0. Metres.
+    pub fn radius_bounds(&self) -> (f64, f64) {
+        (self.range.lower, self.range.upper)
+    }
+
+    pub(crate) fn range(&self) -> Range {
+        self.range
+    }
+
+    /// Volume, centroid and inertia of the enclosed solid.
+    pub fn mass_properties(&self) -> &MassProperties {
+        &self.mass
+    }
+
+    /// r(p), metres. About 3 L² flops.
+    pub fn radius(&self, p: &Direction) -> f64 {
+        let mut work = self.basis.workspace();
+        self.basis.sum(&self.coefficients, p, &mut work)
+    }
+
+    /// r at many directions, metres.
+    pub fn radii(&self, directions: &[Direction]) -> Vec<f64> {
+        sph::batch::evaluate(&self.coefficients, directions)
+    }
+
+    /// r(p) and ∇_S r(p).
+    pub fn radius_and_gradient(&self, p: &Direction) -> (f64, Vector3<f64>) {
+        let jet = self.jet(p);
+        (jet.value, jet.gradient)
+    }
+
+    /// The paper's regular (θ,φ) mesh: `rows` circles of latitude from pole to pole, `columns`
+    /// points each. 100 × 100 is the paper's mesh of 10,000 vertices (Sec. IV-C).
+    ///
+    /// The poles appear once a column, as on the paper's regular grid; triangles that would have
+    /// no area there are left out. Counter-clockwise seen from outside.
+    pub fn mesh(&self, rows: usize, columns: usize) -> TriangleMesh {
+        let grid = RingGrid::equiangular(rows, columns);
+        let radii = grid.synthesis(&self.coefficients).values;
+        TriangleMesh::from_rings(grid.rings(), columns, &radii)
+    }
+
+    fn jet(&self, p: &Direction) -> sph::Jet {
+        let mut work = self.basis.workspace();
+        self.basis.jet(&self.coefficients, p, &mut work)
+    }
+}
+
+fn certify(coefficients: &Coefficients) -> Result<Range, RadialError> {
+    let mut undecided = RadialError::NotPositive { seen: f64::NAN };
+    for oversampling in OVERSAMPLING {
+        let range = certified_range(coefficients, oversampling);
+        if range.lower > 0.0 {
+            return Ok(range);
+        }
+        let seen = range.seen_lower;
+        if !(seen > 0.0) {
+            return Err(RadialError::NotPositive { seen });
+        }
+        undecided = RadialError::Undecided {
+            seen,
+            lower: range.lower,
+        };
+    }
+    Err(undecided)
+}
+
+/// Inward unit normal ∝ ∇_S r − r p: outward it is r p − ∇_S r. This is the one place of that sign.
+fn inward_normal(p: &Direction, radius: f64, gradient: &Vector3<f64>) -> (UnitVector3<f64>, f64) {
+    UnitVector3::new_and_get(gradient - p.into_inner() * radius)
+}
+
+impl Surface for RadialShape {
+    fn point(&self, p: &Direction) -> Point3<f64> {
+        Point3::from(p.into_inner() * self.radius(p))
+    }
+
+    fn contact(&self, p: &Direction) -> (Point3<f64>, UnitVector3<f64>) {
+        let (radius, gradient) = self.radius_and_gradient(p);
+        let normal = inward_normal(p, radius, &gradient).0;
+        (Point3::from(p.into_inner() * radius), normal)
+    }
+
+    fn differential(&self, p: &Direction) -> Differential {
+        let jet = self.jet(p);
+        let direction = p.into_inner();
+        let tangent = Matrix3::identity() - direction * direction.transpose();
+        let (normal, length) = inward_normal(p, jet.value, &jet.gradient);
+        // N = ∇r − r p. Along v: dN = Hess v − p (∇r·v) − p (∇r·v) − r v, the first p from the
+        // turning of the tangent plane, the second from r; n = N/|N|.
+        let raw = jet.hessian - direction * jet.gradient.transpose() * 2.0 - tangent * jet.value;
+        let unit = normal.into_inner();
+        let across = Matrix3::identity() - unit * unit.transpose();
+        Differential {
+            position: Point3::from(direction * jet.value),
+            inward_normal: normal,
+            position_slope: direction * jet.gradient.transpose() + tangent * jet.value,
+            normal_slope: across * raw / length,
+        }
+    }
+
+    fn centre_of_mass(&self) -> Point3<f64> {
+        self.mass.centroid
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sph::direction::{even_directions, retract, tangent_frame};
+
+    fn pebble() -> RadialShape {
+        let mut beta = Coefficients::constant(8, 0.05);
+        for (i, b) in beta.as_mut_slice().iter_mut().enumerate().skip(1) {
+            *b = 0.004 * (i as f64 * 1.9).sin() / (1.0 + 0.3 * i as f64);
+        }
+        RadialShape::new(beta).unwrap()
+    }
+
+    #[test]
+    fn differential_agrees_with_differences_also_at_the_poles() {
+        let shape = pebble();
+        let mut points = even_directions(40);
+        points.extend([Vector3::z_axis(), -Vector3::z_axis()]);
+        let h = 1e-5;
+        for p in points {
+            let here = shape.differential(&p);
+            let (e1, e2) = tangent_frame(&p);
+            for v in [e1, e2] {
+                let (up, down) = (retract(&p, &(v * h)), retract(&p, &(v * -h)));
+                let ((c1, n1), (c0, n0)) = (shape.contact(&up), shape.contact(&down));
+                let moved = (c1 - c0) / (2.0 * h) - here.position_slope * v;
+                let turned =
+                    (n1.into_inner() - n0.into_inner()) / (2.0 * h) - here.normal_slope * v;
+                assert!(moved.norm() <= 1e-9, "{moved}");
+                assert!(turned.norm() <= 1e-7, "{turned}");
+            }
+            let facing = here.inward_normal.dot(&here.position.coords);
+            assert!(facing < 0.0, "the normal points inward");
+            assert!(
+                (here.position_slope.transpose() * here.inward_normal.into_inner()).norm() <= 1e-15
+            );
+        }
+    }
+
+    #[test]
+    fn a_radius_that_turns_negative_is_refused() {
+        let mut beta = Coefficients::constant(4, 0.03);
+        beta.as_mut_slice()[2] = 0.2;
+        assert!(matches!(
+            RadialShape::new(beta),
+            Err(RadialError::NotPositive { .. })
+        ));
+        assert!(RadialShape::sphere(3, 0.0).is_err());
+    }
+
+    #[test]
+    fn the_sphere_has_its_radius_and_normals() {
+        let shape = RadialShape::sphere(5, 0.04).unwrap();
+        for p in even_directions(50) {
+            let (c, n) = shape.contact(&p);
+            assert!((c.coords - p.into_inner() * 0.04).norm() <= 1e-15);
+            assert!((n.into_inner() + p.into_inner()).norm() <= 1e-13);
+        }
+        let (low, high) = shape.radius_bounds();
+        assert!((low - 0.04).abs() < 1e-12 && (high - 0.04).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,70 @@
+//! Triangle meshes, for collision checks and pictures.
+
+use nalgebra::{Point3, Vector3};
+
+/// Vertices in metres and triangles, counter-clockwise seen from outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TriangleMesh {
+    /// Corners, metres.
+    pub vertices: Vec<Point3<f64>>,
+    /// Indices into `vertices`.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl TriangleMesh {
+    /// The surface r p over rings of (sin θ, cos θ) from pole to pole, `columns` longitudes each.
+    ///
+    /// `radii` has one value a point, ring after ring. Triangles on a ring of zero length are
+    /// left out where they would have no area.
+    pub fn from_rings(rings: &[(f64, f64)], columns: usize, radii: &[f64]) -> Self {
+        let step = std::f64::consts::TAU / columns as f64;
+        let mut vertices = Vec::with_capacity(radii.len());
+        for (j, &(sin_theta, cos_theta)) in rings.iter().enumerate() {
+            for k in 0..columns {
+                let (sin, cos) = (step * k as f64).sin_cos();
+                let p = Vector3::new(sin_theta * cos, sin_theta * sin, cos_theta);
+                vertices.push(Point3::from(p * radii[j * columns + k]));
+            }
+        }
+        let mut triangles = Vec::with_capacity(2 * rings.len() * columns);
+        for j in 0..rings.len().saturating_sub(1) {
+            for k in 0..columns {
+                let at = |row: usize, column: usize| (row * columns + column % columns) as u32;
+                let (a, b) = (at(j, k), at(j + 1, k));
+                let (c, d) = (at(j + 1, k + 1), at(j, k + 1));
+                if j + 2 < rings.len() {
+                    triangles.push([a, b, c]);
+                }
+                if j > 0 {
+                    triangles.push([a, c, d]);
+                }
+            }
+        }
+        Self {
+            vertices,
+            triangles,
+        }
+    }
+
+    /// Signed volume by the divergence theorem, m³; positive when triangles face outward.
+    pub fn volume(&self) -> f64 {
+        let corner = |i: u32| self.vertices[i as usize].coords;
+        self.triangles
+            .iter()
+            .map(|&[a, b, c]| corner(a).dot(&corner(b).cross(&corner(c))) / 6.0)
+            .sum()
+    }
+
+    /// Total area, m².
+    pub fn area(&self) -> f64 {
+        let corner = |i: u32| self.vertices[i as usize];
+        self.triangles
+            .iter()
+            .map(|&[a, b, c]| {
+                0.5 * (corner(b) - corner(a))
+                    .cross(&(corner(c) - corner(a)))
+                    .norm()
+            })
+            .sum()
+    }
+}

@@ -1,0 +1,18 @@
+//! Real functions on the unit sphere: evaluation, transforms and regression.
+//!
+//! The basis is the paper's: real, orthonormal spherical harmonics without the Condon–Shortley
+//! phase (Sec. II-C), stored at position l² + l + m. See `CONVENTIONS.md`.
+
+pub mod basis;
+pub mod batch;
+pub mod bounds;
+pub mod coefficients;
+pub mod direction;
+pub mod grid;
+pub mod index;
+mod legendre;
+pub mod regression;
+
+pub use basis::{Basis, Harmonic, Jet};
+pub use coefficients::{Coefficients, CoefficientsError};
+pub use direction::{Direction, SphericalCoords};

@@ -1,0 +1,84 @@
+//! Least-squares fits of Σ β_{lm} Y_{lm} to samples of a function on the sphere.
+
+pub mod gram;
+pub mod penalty;
+pub mod qr;
+
+use crate::direction::Direction;
+
+pub use gram::Gram;
+pub use penalty::Penalty;
+
+/// Samples fᵢ at directions pᵢ.
+#[derive(Clone, Copy, Debug)]
+pub struct Samples<'a> {
+    /// pᵢ.
+    pub directions: &'a [Direction],
+    /// fᵢ.
+    pub values: &'a [f64],
+}
+
+/// Why a regression has no answer.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RegressionError {
+    /// The lists differ in length.
+    #[error("{directions} directions but {values} values")]
+    Lengths {
+        /// Number of directions.
+        directions: usize,
+        /// Number of values.
+        values: usize,
+    },
+    /// There is nothing to fit.
+    #[error("no samples")]
+    Empty,
+    /// A value or direction is NaN or infinite.
+    #[error("sample {index} has value {value}; expected a finite value at a unit direction")]
+    NotFinite {
+        /// Which sample.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// Without a penalty the samples do not determine the coefficients.
+    #[error(
+        "{samples} samples do not determine the {coefficients} coefficients of degree {degree}; lower the degree or use a penalty"
+    )]
+    RankDeficient {
+        /// Number of samples.
+        samples: usize,
+        /// Number of unknowns.
+        coefficients: usize,
+        /// Degree L.
+        degree: usize,
+    },
+    /// The penalty is not a finite number ≥ 0.
+    #[error("penalty {lambda}; expected a finite number that is not negative")]
+    Penalty {
+        /// The value given.
+        lambda: f64,
+    },
+}
+
+impl Samples<'_> {
+    /// Checks lengths and finiteness.
+    pub fn check(&self) -> Result<(), RegressionError> {
+        if self.directions.len() != self.values.len() {
+            return Err(RegressionError::Lengths {
+                directions: self.directions.len(),
+                values: self.values.len(),
+            });
+        }
+        if self.values.is_empty() {
+            return Err(RegressionError::Empty);
+        }
+        let bad = |(p, v): (&Direction, &f64)| !v.is_finite() || !p.iter().all(|x| x.is_finite());
+        match self.directions.iter().zip(self.values).position(bad) {
+            Some(index) => Err(RegressionError::NotFinite {
+                index,
+                value: self.values[index],
+            }),
+            None => Ok(()),
+        }
+    }
+}
