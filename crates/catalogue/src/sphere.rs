@@ -58,7 +58,7 @@ mod tests {
             .map(|p| ((p - centre).norm() - 0.045).powi(2))
             .sum();
         let rms = (squares / cloud.len() as f64).sqrt();
-        assert!(rms >= 0.34e-3 && rms <= 0.45e-3, "rms {rms}");
+        assert!((0.34e-3..=0.45e-3).contains(&rms), "rms {rms}");
         let mean = cloud.iter().map(|p| p - centre).sum::<Vector3<f64>>() / cloud.len() as f64;
         // Five standard errors of a mean of 20,000 points with deviation radius/√3 an axis.
         assert!(mean.amax() <= 5.0 * 0.045 / (3.0f64 * 20_000.0).sqrt());

@@ -48,7 +48,7 @@ fn detergent_bottle() -> CatalogueObject {
     let label = [
         "U2",
         "detergent bottle",
-        "flat bottle with a dented grip and an off-centre cap, 96 by 58 mm, 185 mm high",
+        "flat bottle with a dented grip and an off-centre cap, 96 by 60 mm, 185 mm high",
     ];
     CatalogueObject::new(label, 14, 0.185, bottle)
 }

@@ -1,9 +1,20 @@
 //! Fig. 4 of the paper: on its straight ways to others, S5 passes the neighbourhood of S7 and S8.
 
-mod common;
-
 use catalogue::{by_id, library_objects};
-use common::equal_area_directions;
+use nalgebra::{Unit, Vector3};
+use std::f64::consts::PI;
+
+/// Midpoints of `rows` × `columns` cells of equal area on the sphere, row by row from −z.
+fn equal_area_directions(rows: usize, columns: usize) -> impl Iterator<Item = Unit<Vector3<f64>>> {
+    (0..rows).flat_map(move |row| {
+        let z = -1.0 + 2.0 * (row as f64 + 0.5) / rows as f64;
+        let ring = (1.0 - z * z).sqrt();
+        (0..columns).map(move |column| {
+            let (sin, cos) = (2.0 * PI * (column as f64 + 0.5) / columns as f64).sin_cos();
+            Unit::new_normalize(Vector3::new(ring * cos, ring * sin, z))
+        })
+    })
+}
 
 /// The radial function about the centre on an equal-area grid of directions.
 fn radial_function(id: &str) -> Vec<f64> {

@@ -1,5 +1,10 @@
 //! Every row of the reference grasps, and the check values of the conventions.
 
+#![allow(
+    clippy::print_stderr,
+    reason = "a test that finds no data says so"
+)]
+
 use grasp::hull::ConvexHull;
 use grasp::{
     Contact, Convention, EdgeNorm, Edges, TorqueLength, Workspace, Wrench, epsilon,

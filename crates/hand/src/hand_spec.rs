@@ -8,7 +8,7 @@ use serde::Deserialize;
 use thiserror::Error;
 
 /// The largest TOML text accepted, in bytes.
-pub const MAX_SPEC_BYTES: usize = 1 << 20;
+pub(crate) const MAX_SPEC_BYTES: usize = 1 << 20;
 
 /// What fingers there are, how they close and how the hand starts.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

@@ -1,1 +1,38 @@
-//! hand
+//! Hands from URDF files and the grasps that they can make on smooth objects.
+//!
+//! A [`HandModel`] is the kinematic tree, a [`HandSpec`] says how it is used, a [`Hand`]
+//! is both, checked. [`synthesize`] samples poses around a surface, closes the fingers
+//! and ranks the grasps (paper, Sec. IV-C). The palm frame is the root link's; lengths
+//! in metres, angles in radians.
+
+mod closing;
+mod collision;
+mod contact;
+mod hand;
+mod hand_spec;
+mod kinematics;
+mod mesh_file;
+mod model;
+mod pose_sampling;
+mod sdh;
+mod synthesis;
+mod urdf;
+
+pub use closing::{ClosedHand, ClosingRules, Rejection, close_hand};
+pub use collision::{CNT, CollisionObject, Gap, GeometryError, ObjectError, Precision};
+pub use contact::{TipContact, tip_contact};
+pub use hand::{Finger, Hand, HandError, Preshape};
+pub use hand_spec::{FingerSpec, HandSpec, PreshapeSpec, SelfDistance, SpecTextError};
+pub use kinematics::KinematicsError;
+pub use mesh_file::{MeshFileError, mesh_vertices};
+pub use model::{Drive, Geometry, HandModel, Joint, JointKind, Link, LinkGeometry};
+pub use pose_sampling::{HandPose, PoseSampling, aimed};
+pub use sdh::{LoadError, SDH_SPEC, SDH_URDF, schunk_sdh};
+pub use synthesis::{
+    HandGrasp, Outcome, OutcomeCounts, Synthesis, SynthesisError, SynthesisParams, collect,
+    evaluate_pose, synthesize,
+};
+pub use urdf::{
+    MAX_LENGTH_M, MAX_LINKS, MAX_PIECES, MAX_URDF_BYTES, MAX_URDF_DEPTH, MAX_URDF_ELEMENTS, UrdfError,
+    load_urdf, load_urdf_with_meshes,
+};

@@ -4,7 +4,7 @@ use nalgebra::Point3;
 use thiserror::Error;
 
 /// The largest mesh file accepted, in bytes.
-pub const MAX_MESH_BYTES: usize = 64 << 20;
+pub(crate) const MAX_MESH_BYTES: usize = 64 << 20;
 const STL_HEADER: usize = 84;
 const STL_TRIANGLE: usize = 50;
 

@@ -258,7 +258,7 @@ fn geometry(
         },
         urdf_rs::Geometry::Mesh { filename, scale } => {
             let scale = vector(link, "mesh scale", &scale.map_or([1.0; 3], |s| s.0))?;
-            let points = resolve(link, filename)?
+            let points: Vec<_> = resolve(link, filename)?
                 .iter()
                 .map(|p| Point3::from(p.coords.component_mul(&scale)))
                 .collect();

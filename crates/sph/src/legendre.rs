@@ -147,9 +147,9 @@ impl Azimuth {
             }
             self.re[m] = re;
             self.im[m] = im;
-            // Two factors: 2^-1024 alone is subnormal, and 2^-1536 is zero although Π may be 1e115.
-            let half = exponent / SCALE_STEP / 2 * SCALE_STEP;
-            self.unscale[m] = (2.0_f64.powi(-half), 2.0_f64.powi(half - exponent));
+            // Two factors, since 2^-1536 alone is zero although Π may be 1e115.
+            let steps = exponent / SCALE_STEP;
+            self.unscale[m] = (small.powi(steps / 2), small.powi(steps - steps / 2));
         }
     }
 

@@ -1,0 +1,264 @@
+//! Grasps of a hand on an object: sampled poses, closed fingers, ranked results.
+
+use std::collections::BTreeMap;
+
+use grasp::{Contact, Convention, Grasp, QualityError, epsilon_quality};
+use nalgebra::{Isometry3, Point3};
+use rand::Rng;
+use shape::RadialShape;
+use sph::Direction;
+use thiserror::Error;
+
+use crate::closing::{ClosingRules, Rejection, close_hand};
+use crate::collision::{CollisionObject, ObjectError};
+use crate::contact::tip_contact;
+use crate::hand::Hand;
+use crate::pose_sampling::{HandPose, PoseSampling};
+
+/// What a synthesis run does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SynthesisParams {
+    /// Number of poses to try.
+    pub poses: usize,
+    /// How poses are drawn.
+    pub sampling: PoseSampling,
+    /// When fingers have arrived and what stays clear.
+    pub rules: ClosingRules,
+    /// How quality is measured.
+    pub convention: Convention,
+    /// The point about which torques are taken, object frame, metres.
+    pub centre: Point3<f64>,
+    /// Grasps of lower quality count as unstable; the paper's bound is 0.01.
+    pub least_quality: f64,
+}
+
+/// A grasp that a hand can make.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HandGrasp {
+    /// Pose of the palm (the root link) in the object frame.
+    pub object_from_palm: Isometry3<f64>,
+    /// One value a driven joint, in the order of [`crate::HandModel::driven_names`].
+    pub joints: Vec<f64>,
+    /// Index of the pre-shape from which the fingers closed.
+    pub preshape: usize,
+    /// One contact a finger, object frame, inward normals.
+    pub contacts: Vec<Contact>,
+    /// Directions of the contacts from the origin: the grasp's point of (S²)^m.
+    pub directions: Vec<Direction>,
+    /// Distance of each tip from its contact, metres.
+    pub gaps: Vec<f64>,
+    /// Quality under the run's convention.
+    pub quality: f64,
+}
+
+/// What became of one pose.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    /// A grasp of at least the wanted quality.
+    Stable(HandGrasp),
+    /// A grasp of less than the wanted quality.
+    Unstable(HandGrasp),
+    /// No grasp.
+    Rejected(Rejection),
+}
+
+/// How many poses ended how.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct OutcomeCounts {
+    /// Stable grasps.
+    pub stable: usize,
+    /// Grasps of too low a quality.
+    pub unstable: usize,
+    /// Rejected poses by reason.
+    pub rejected: BTreeMap<Rejection, usize>,
+}
+
+/// Ranked grasps and the fate of all poses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Synthesis {
+    /// Stable grasps, the best first.
+    pub grasps: Vec<HandGrasp>,
+    /// Counts over all poses.
+    pub outcomes: OutcomeCounts,
+}
+
+/// Why a synthesis run cannot be made.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum SynthesisError {
+    /// The object cannot be prepared.
+    #[error(transparent)]
+    Object(#[from] ObjectError),
+    /// The quality cannot be computed.
+    #[error(transparent)]
+    Quality(#[from] QualityError),
+}
+
+impl OutcomeCounts {
+    /// Adds one outcome.
+    pub fn add(&mut self, outcome: &Outcome) {
+        match outcome {
+            Outcome::Stable(_) => self.stable += 1,
+            Outcome::Unstable(_) => self.unstable += 1,
+            Outcome::Rejected(reason) => *self.rejected.entry(*reason).or_default() += 1,
+        }
+    }
+
+    /// Number of poses counted.
+    pub fn total(&self) -> usize {
+        self.stable + self.unstable + self.rejected.values().sum::<usize>()
+    }
+
+    /// Rejected poses by kind of reason, links and fingers summed, in a fixed order.
+    pub fn by_reason(&self) -> Vec<(&'static str, usize)> {
+        Rejection::REASONS
+            .iter()
+            .map(|&name| {
+                let of = self.rejected.iter().filter(|(r, _)| r.reason() == name);
+                (name, of.map(|(_, count)| count).sum())
+            })
+            .collect()
+    }
+}
+
+impl Rejection {
+    /// All reasons, in the order in which a pose meets them.
+    pub const REASONS: [&'static str; 6] = [
+        "base_near_object",
+        "starts_in_object",
+        "part_near_object",
+        "tip_did_not_arrive",
+        "parts_near_each_other",
+        "no_contact",
+    ];
+
+    /// The kind of reason, without link or finger.
+    pub fn reason(&self) -> &'static str {
+        match self {
+            Rejection::BaseNearObject { .. } => Self::REASONS[0],
+            Rejection::StartsInObject { .. } => Self::REASONS[1],
+            Rejection::PartNearObject { .. } => Self::REASONS[2],
+            Rejection::TipDidNotArrive { .. } => Self::REASONS[3],
+            Rejection::PartsNear { .. } => Self::REASONS[4],
+            Rejection::NoContact { .. } => Self::REASONS[5],
+        }
+    }
+
+    /// A sentence with the names of links and fingers.
+    pub fn describe(&self, hand: &Hand) -> String {
+        let link = |l: &usize| hand.model().links()[*l].name.as_str();
+        let finger = |f: &usize| hand.fingers()[*f].name.as_str();
+        match self {
+            Rejection::BaseNearObject { link: l } => {
+                format!("'{}' is too near to the object", link(l))
+            }
+            Rejection::StartsInObject { finger: f } => {
+                format!("finger '{}' starts in the object", finger(f))
+            }
+            Rejection::PartNearObject { link: l } => {
+                format!("'{}' came too near to the object", link(l))
+            }
+            Rejection::TipDidNotArrive { finger: f } => {
+                format!("the tip of finger '{}' met nothing", finger(f))
+            }
+            Rejection::PartsNear { first, second } => {
+                format!("'{}' and '{}' are too near", link(first), link(second))
+            }
+            Rejection::NoContact { finger: f } => {
+                format!("finger '{}' has no contact within the gap", finger(f))
+            }
+        }
+    }
+}
+
+/// Samples poses, closes the hand from each and ranks what is stable.
+///
+/// Poses are drawn first, then evaluated one by one; callers who want threads do the
+/// same with [`PoseSampling::sample`], [`evaluate_pose`] and [`collect`] and get the same
+/// result. Errors: a convention that cannot be used.
+pub fn synthesize<R: Rng + ?Sized>(
+    surface: &RadialShape,
+    hand: &Hand,
+    params: &SynthesisParams,
+    rng: &mut R,
+) -> Result<Synthesis, SynthesisError> {
+    let object = CollisionObject::new(surface)?;
+    let poses = params.sampling.sample(surface, hand, params.poses, rng);
+    let outcomes = poses
+        .iter()
+        .map(|pose| evaluate_pose(&object, hand, pose, params))
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok(collect(outcomes))
+}
+
+/// Closes the hand from one pose and measures the grasp; depends on nothing else.
+pub fn evaluate_pose(
+    object: &CollisionObject<'_>,
+    hand: &Hand,
+    pose: &HandPose,
+    params: &SynthesisParams,
+) -> Result<Outcome, QualityError> {
+    let grasp = match close_and_touch(object, hand, pose, &params.rules) {
+        Ok(grasp) => grasp,
+        Err(reason) => return Ok(Outcome::Rejected(reason)),
+    };
+    let measured = Grasp {
+        contacts: grasp.contacts.clone(),
+        centre: params.centre,
+    };
+    let quality = epsilon_quality(&measured, &params.convention)?;
+    let grasp = HandGrasp { quality, ..grasp };
+    Ok(if quality > 0.0 && quality >= params.least_quality {
+        Outcome::Stable(grasp)
+    } else {
+        Outcome::Unstable(grasp)
+    })
+}
+
+fn close_and_touch(
+    object: &CollisionObject<'_>,
+    hand: &Hand,
+    pose: &HandPose,
+    rules: &ClosingRules,
+) -> Result<HandGrasp, Rejection> {
+    let start = &hand.preshapes()[pose.preshape].joints;
+    let closed = close_hand(object, hand, &pose.object_from_palm, start, rules)?;
+    let mut grasp = HandGrasp {
+        object_from_palm: pose.object_from_palm,
+        joints: closed.joints,
+        preshape: pose.preshape,
+        contacts: Vec::with_capacity(hand.fingers().len()),
+        directions: Vec::with_capacity(hand.fingers().len()),
+        gaps: Vec::with_capacity(hand.fingers().len()),
+        quality: 0.0,
+    };
+    for (finger, tip) in hand.fingers().iter().enumerate() {
+        let contact = tip_contact(object, hand, tip, &closed.object_from_links)
+            .filter(|c| c.gap < rules.tip_gap)
+            .ok_or(Rejection::NoContact { finger })?;
+        grasp.contacts.push(Contact {
+            position: contact.position,
+            inward_normal: contact.inward_normal,
+        });
+        grasp.directions.push(contact.direction);
+        grasp.gaps.push(contact.gap);
+    }
+    Ok(grasp)
+}
+
+/// Counts outcomes and ranks the stable grasps, the best first; equal ones stay in the
+/// order of their poses.
+pub fn collect(outcomes: impl IntoIterator<Item = Outcome>) -> Synthesis {
+    let mut counts = OutcomeCounts::default();
+    let mut grasps = Vec::new();
+    for outcome in outcomes {
+        counts.add(&outcome);
+        if let Outcome::Stable(grasp) = outcome {
+            grasps.push(grasp);
+        }
+    }
+    grasps.sort_by(|a, b| b.quality.total_cmp(&a.quality));
+    Synthesis {
+        grasps,
+        outcomes: counts,
+    }
+}

@@ -1,0 +1,31 @@
+//! Climbing in quality on one surface.
+
+mod paper;
+
+pub use paper::PaperAscent;
+
+use sph::Direction;
+
+/// One state of an ascent, for traces.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<'a> {
+    /// Where the contacts are.
+    pub contacts: &'a [Direction],
+    /// Q there.
+    pub quality: f64,
+    /// Length of the gradient of Q, by radian; 0 at a smooth maximum.
+    pub stationarity: f64,
+}
+
+/// Where an ascent ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ascent {
+    /// Final contacts.
+    pub contacts: Vec<Direction>,
+    /// Q at the start.
+    pub start_quality: f64,
+    /// Q at the end.
+    pub quality: f64,
+    /// Qualities computed on the way.
+    pub evaluations: usize,
+}

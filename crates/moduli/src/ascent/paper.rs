@@ -1,0 +1,83 @@
+//! The fixed-step ascent of the paper, to the letter.
+
+use grasp::QualityError;
+use shape::Surface;
+use sph::Direction;
+
+use super::{Ascent, Step};
+use crate::chart::{from_angles, to_angles};
+use crate::gradient::forward_differences;
+use crate::objective::Objective;
+use crate::point::contacts_on;
+
+/// x_{n+1} = x_n + rate · clamp(∇Q(x_n)), clamp(v) = v/max(1, ‖v‖), x = (θ₁,φ₁,…) (Sec. IV-D).
+///
+/// It can end below its start; that is the paper's own finding, kept for comparison.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PaperAscent {
+    /// Number of steps; 1000 in Sec. IV-D, 100 a station in Sec. IV-E.
+    pub steps: usize,
+    /// Forward-difference step δ in radians; 1e-5.
+    pub delta: f64,
+    /// Step length in radians; 0.01.
+    pub rate: f64,
+}
+
+impl PaperAscent {
+    /// Climbs from `start`; `trace` sees every state, the start and the end included.
+    ///
+    /// Costs 1 + 2m qualities a step. A start that is not force-closed has no gradient and stays.
+    pub fn climb(
+        &self,
+        surface: &impl Surface,
+        start: &[Direction],
+        objective: &mut Objective,
+        mut trace: impl FnMut(&Step),
+    ) -> Result<Ascent, QualityError> {
+        let before = objective.evaluations();
+        let mut angles = to_angles(start);
+        let mut gradient = vec![0.0; angles.len()];
+        let mut directions = start.to_vec();
+        let mut contacts = contacts_on(surface, &directions);
+        let mut quality = objective.quality(&contacts)?;
+        let start_quality = quality;
+        for _ in 0..self.steps {
+            forward_differences(
+                surface,
+                &angles,
+                &mut contacts,
+                quality,
+                self.delta,
+                objective,
+                &mut gradient,
+            )?;
+            let norm = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
+            trace(&Step {
+                contacts: &directions,
+                quality,
+                stationarity: norm,
+            });
+            if norm == 0.0 {
+                // Every later step would compute the same: no gradient, no motion.
+                break;
+            }
+            for (x, g) in angles.iter_mut().zip(&gradient) {
+                *x += self.rate * g / norm.max(1.0);
+            }
+            directions = from_angles(&angles);
+            contacts = contacts_on(surface, &directions);
+            quality = objective.quality(&contacts)?;
+        }
+        trace(&Step {
+            contacts: &directions,
+            quality,
+            stationarity: gradient.iter().map(|g| g * g).sum::<f64>().sqrt(),
+        });
+        Ok(Ascent {
+            contacts: directions,
+            start_quality,
+            quality,
+            evaluations: objective.evaluations() - before,
+        })
+    }
+}

@@ -1,0 +1,34 @@
+//! The two metrics of Sec. III-C: on grasps, and on shapes with grasps.
+
+use grasp::{ContactCounts, Grasp};
+use shape::{RadialShape, space};
+
+/// Why two points have no distance.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MetricError {
+    /// The weight is not in [0, 1].
+    #[error("weight {weight}; expected a number in [0, 1]")]
+    Weight {
+        /// The weight given.
+        weight: f64,
+    },
+    /// The grasps have different numbers of contacts.
+    #[error(transparent)]
+    Contacts(#[from] ContactCounts),
+}
+
+/// w d(f, f′) + (1−w) d(g, g′), with d(f, f′) = ‖β−β′‖ and d(g, g′) the largest change of a
+/// contact, a normal or the centre ([`grasp::distance`]). w ∈ [0, 1]; metres and unit normals are
+/// added as they are, as in the paper.
+pub fn distance(
+    weight: f64,
+    (shape_a, grasp_a): (&RadialShape, &Grasp),
+    (shape_b, grasp_b): (&RadialShape, &Grasp),
+) -> Result<f64, MetricError> {
+    if !(0.0..=1.0).contains(&weight) {
+        return Err(MetricError::Weight { weight });
+    }
+    let shapes = space::distance(shape_a, shape_b);
+    let grasps = grasp::distance(grasp_a, grasp_b)?;
+    Ok(weight * shapes + (1.0 - weight) * grasps)
+}

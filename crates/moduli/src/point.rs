@@ -1,0 +1,41 @@
+//! Points of the moduli space and the grasps they stand for.
+
+use grasp::{Contact, Grasp};
+use nalgebra::Point3;
+use shape::Surface;
+use sph::Direction;
+
+/// (f, (p₁, …, p_m)) ∈ M × (S²)^m: a surface and contacts on it (Definition 3.3 of the paper).
+#[derive(Clone, Debug)]
+pub struct ModuliPoint<S> {
+    /// f.
+    pub surface: S,
+    /// p₁, …, p_m.
+    pub contacts: Vec<Direction>,
+}
+
+impl<S: Surface> ModuliPoint<S> {
+    /// g(f, p) = (c₁, …, c_m, n₁, …, n_m, z) with cᵢ = f(pᵢ) and nᵢ the inward normal there.
+    ///
+    /// z is given, since conventions differ on it; see [`crate::Objective`].
+    pub fn grasp(&self, centre: Point3<f64>) -> Grasp {
+        Grasp {
+            contacts: contacts_on(&self.surface, &self.contacts),
+            centre,
+        }
+    }
+}
+
+/// Positions and inward normals of a surface at given directions.
+pub fn contacts_on(surface: &impl Surface, directions: &[Direction]) -> Vec<Contact> {
+    directions.iter().map(|p| contact_on(surface, p)).collect()
+}
+
+/// Position and inward normal of a surface at one direction.
+pub fn contact_on(surface: &impl Surface, p: &Direction) -> Contact {
+    let (position, inward_normal) = surface.contact(p);
+    Contact {
+        position,
+        inward_normal,
+    }
+}
