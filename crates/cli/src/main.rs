@@ -1,2 +1,44 @@
-//! cli
-fn main() {}
+//! `moduli`: grasps on a user's own objects, from the command line.
+
+mod args;
+mod commands;
+mod failure;
+mod input;
+mod numpy;
+mod output;
+mod plan;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::args::{Arguments, Command};
+use crate::failure::Failure;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match run(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            output::report_failure(&failure);
+            failure.exit_code()
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let common = &arguments.common;
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(common.threads.unwrap_or(0))
+        .build_global()
+        .map_err(|e| Failure::other(format!("cannot start threads: {e}")))?;
+    match &arguments.command {
+        Command::Fit(options) => commands::fit::run(options, common),
+        Command::Eval(options) => commands::eval::run(options, common),
+        Command::Mesh(options) => commands::mesh::run(options),
+        Command::Distance(options) => commands::distance::run(options, common),
+        Command::Quality(options) => commands::quality::run(options, common),
+        Command::Grasp(options) => commands::grasp::run(options, common),
+        Command::Info(options) => commands::info::run(options),
+    }
+}

@@ -8,7 +8,9 @@ mod closure;
 mod contact;
 mod convention;
 mod distance;
+mod finger;
 mod friction;
+mod gradient;
 pub mod hull;
 mod linear;
 mod quality;
@@ -20,8 +22,12 @@ pub use convention::{
     CentreRule, Convention, ConventionError, EdgeNorm, Edges, TorqueLength, UnknownConvention,
 };
 pub use distance::{ContactCounts, distance};
+pub use finger::{Finger, FingerError, Setup};
 pub use friction::{cone_edges, cone_edges_from, tangent};
+pub use gradient::{FrameRule, Gradient, facet_gradient};
 pub use quality::{
-    Epsilon, QualityError, Workspace, epsilon, epsilon_of_wrenches, epsilon_quality, volume,
+    ActiveFacet, BatchError, Carrier, Epsilon, Margin, QualityError, Workspace, epsilon,
+    epsilon_batch, epsilon_of, epsilon_of_wrenches, epsilon_quality, margin, near_active_facets,
+    volume,
 };
 pub use wrench::{Wrench, WrenchError, wrench, wrenches, wrenches_into, wrenches_with_tangents};

@@ -2,6 +2,7 @@
 
 use crate::contact::{self, Contact, ContactError};
 use crate::convention::{Convention, ConventionError, Edges};
+use crate::finger::FingerError;
 use crate::friction::{cone_edges_from, tangent};
 use nalgebra::{Point3, UnitVector3, Vector3, Vector6};
 use thiserror::Error;
@@ -101,6 +102,9 @@ pub enum WrenchError {
     /// The convention is out of range.
     #[error(transparent)]
     Convention(#[from] ConventionError),
+    /// The fingers do not fit the contacts.
+    #[error(transparent)]
+    Finger(#[from] FingerError),
     /// A round cone has no edges to list.
     #[error("a round friction cone has no finite list of wrenches")]
     RoundCone,

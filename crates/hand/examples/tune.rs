@@ -5,20 +5,38 @@ fn main() {
     let root = std::env::var("MODULI_DATA").unwrap();
     let hand = hand::schunk_sdh().unwrap();
     let names: Vec<String> = std::env::args().skip(1).collect();
-    let poses = std::env::var("POSES").ok().and_then(|s| s.parse().ok()).unwrap_or(1400);
+    let poses = std::env::var("POSES")
+        .ok()
+        .and_then(|s| s.parse().ok())
+        .unwrap_or(1400);
     for name in &names {
         let surface = if let Some(r) = name.strip_prefix("sphere") {
             shape::RadialShape::sphere(50, r.parse::<f64>().unwrap() / 1e3).unwrap()
         } else {
             let cache = format!("/tmp/hand_fit_{name}.bin");
             let beta = match std::fs::read(&cache) {
-                Ok(b) => b.chunks_exact(8).map(|c| f64::from_le_bytes(c.try_into().unwrap())).collect(),
+                Ok(b) => b
+                    .chunks_exact(8)
+                    .map(|c| f64::from_le_bytes(c.try_into().unwrap()))
+                    .collect(),
                 Err(_) => {
                     let bytes = std::fs::read(format!("{root}/objects/{name}.ply")).unwrap();
-                    let cloud = shape::PointCloud::new(shape::io::read_ply(&bytes).unwrap().points).unwrap();
-                    let fit = shape::fit::fit(&cloud, &shape::FitSettings { degree: 50, lambda: None }).unwrap();
+                    let cloud = shape::PointCloud::new(shape::io::read_ply(&bytes).unwrap().points)
+                        .unwrap();
+                    let fit = shape::fit::fit(
+                        &cloud,
+                        &shape::FitSettings {
+                            degree: 50,
+                            lambda: None,
+                        },
+                    )
+                    .unwrap();
                     let v: Vec<f64> = fit.shape.coefficients().as_slice().to_vec();
-                    std::fs::write(&cache, v.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>()).unwrap();
+                    std::fs::write(
+                        &cache,
+                        v.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>(),
+                    )
+                    .unwrap();
                     v
                 }
             };
@@ -38,13 +56,35 @@ fn main() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(1);
         let sampled = params.sampling.sample(&surface, &hand, poses, &mut rng);
         let t = Instant::now();
-        let outcomes: Vec<_> = sampled.iter().map(|p| hand::evaluate_pose(&object, &hand, p, &params).unwrap()).collect();
+        let outcomes: Vec<_> = sampled
+            .iter()
+            .map(|p| hand::evaluate_pose(&object, &hand, p, &params).unwrap())
+            .collect();
         let seconds = t.elapsed().as_secs_f64();
-        println!("queries, nodes, tris {:?}", hand::CNT);
-        let by_pre = |k: usize| outcomes.iter().zip(&sampled).filter(|(o, p)| p.preshape == k && matches!(o, hand::Outcome::Stable(_))).count();
+        let by_pre = |k: usize| {
+            outcomes
+                .iter()
+                .zip(&sampled)
+                .filter(|(o, p)| p.preshape == k && matches!(o, hand::Outcome::Stable(_)))
+                .count()
+        };
         let pre = (by_pre(0), by_pre(1));
         let all = hand::collect(outcomes);
-        println!("{name}: r {:?} build {build:?} err {:.3} mm; {seconds:.2} s; stable {} {:?} unstable {} {:?} best {:.3} 50th {:.3}", surface.radius_bounds(), object.mesh_error()*1e3, all.outcomes.stable, pre, all.outcomes.unstable, all.outcomes.by_reason(), all.grasps.first().map_or(0.0, |g| g.quality), all.grasps.get(49).map_or(0.0, |g| g.quality));
-        if std::env::var("DETAIL").is_ok() { for (r, c) in &all.outcomes.rejected { println!("   {c} {}", r.describe(&hand)); } }
+        println!(
+            "{name}: r {:?} build {build:?} err {:.3} mm; {seconds:.2} s; stable {} {:?} unstable {} {:?} best {:.3} 50th {:.3}",
+            surface.radius_bounds(),
+            object.mesh_error() * 1e3,
+            all.outcomes.stable,
+            pre,
+            all.outcomes.unstable,
+            all.outcomes.by_reason(),
+            all.grasps.first().map_or(0.0, |g| g.quality),
+            all.grasps.get(49).map_or(0.0, |g| g.quality)
+        );
+        if std::env::var("DETAIL").is_ok() {
+            for (r, c) in &all.outcomes.rejected {
+                println!("   {c} {}", r.describe(&hand));
+            }
+        }
     }
 }

@@ -118,7 +118,8 @@ fn check_base(
     let moves = |link: &usize| hand.fingers.iter().any(|f| f.moving_links.contains(link));
     for link in (0..hand.shapes.len()).filter(|l| !moves(l)) {
         let free = clearance(object, hand, link, &poses[link], rules);
-        if free < rules.object_clearance || object.holds_piece_of(&hand.shapes[link], &poses[link]) {
+        if free < rules.object_clearance || object.holds_piece_of(&hand.shapes[link], &poses[link])
+        {
             return Err(Rejection::BaseNearObject { link });
         }
     }

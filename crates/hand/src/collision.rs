@@ -5,7 +5,7 @@ mod piece;
 mod self_distance;
 mod tree;
 
-pub use object::{CNT, CollisionObject, Gap, ObjectError, Precision};
+pub use object::{CollisionObject, Gap, ObjectError, Precision};
 pub use piece::GeometryError;
 pub(crate) use piece::{ConvexPiece, LinkShape, check_hull};
 pub(crate) use self_distance::first_close_pair;

@@ -85,7 +85,7 @@ impl Tip<'_> {
                 let local = object_from_piece.inverse_transform_point(p);
                 let on_piece = piece.closest_point(&local.coords);
                 let distance = (on_piece - local.coords).norm();
-                if !(distance > 0.0) {
+                if distance.is_nan() || distance <= 0.0 {
                     return None;
                 }
                 if best.is_none_or(|(_, least)| distance < least) {
@@ -151,7 +151,8 @@ fn descend(chart: &Chart<'_>, tip: &Tip<'_>) -> Option<Vector2<f64>> {
             break;
         }
         let mut step = -(inverse_hessian * gradient);
-        if !(step.dot(&gradient) < 0.0) {
+        let slope = step.dot(&gradient);
+        if slope.is_nan() || slope >= 0.0 {
             inverse_hessian = Matrix2::identity() * (1.0 / radius);
             step = -gradient / radius;
         }
@@ -193,7 +194,7 @@ fn line_search(
 /// The BFGS update of an inverse Hessian.
 fn update_inverse(h: &mut Matrix2<f64>, s: &Vector2<f64>, y: &Vector2<f64>) {
     let sy = s.dot(y);
-    if !(sy > 1e-300) {
+    if sy.is_nan() || sy <= 1e-300 {
         return;
     }
     let left = Matrix2::identity() - s * y.transpose() / sy;

@@ -19,7 +19,7 @@ mod synthesis;
 mod urdf;
 
 pub use closing::{ClosedHand, ClosingRules, Rejection, close_hand};
-pub use collision::{CNT, CollisionObject, Gap, GeometryError, ObjectError, Precision};
+pub use collision::{CollisionObject, Gap, GeometryError, ObjectError, Precision};
 pub use contact::{TipContact, tip_contact};
 pub use hand::{Finger, Hand, HandError, Preshape};
 pub use hand_spec::{FingerSpec, HandSpec, PreshapeSpec, SelfDistance, SpecTextError};
@@ -33,6 +33,6 @@ pub use synthesis::{
     evaluate_pose, synthesize,
 };
 pub use urdf::{
-    MAX_LENGTH_M, MAX_LINKS, MAX_PIECES, MAX_URDF_BYTES, MAX_URDF_DEPTH, MAX_URDF_ELEMENTS, UrdfError,
-    load_urdf, load_urdf_with_meshes,
+    MAX_LENGTH_M, MAX_LINKS, MAX_PIECES, MAX_URDF_BYTES, MAX_URDF_DEPTH, MAX_URDF_ELEMENTS,
+    UrdfError, load_urdf, load_urdf_with_meshes,
 };

@@ -55,7 +55,10 @@ pub fn mesh_vertices(bytes: &[u8]) -> Result<Vec<Point3<f64>>, MeshFileError> {
     if vertices.is_empty() {
         return Err(MeshFileError::Empty);
     }
-    match vertices.iter().position(|v| !v.coords.iter().all(|c| c.is_finite())) {
+    match vertices
+        .iter()
+        .position(|v| !v.coords.iter().all(|c| c.is_finite()))
+    {
         Some(index) => Err(MeshFileError::NotFinite(index)),
         None => Ok(vertices),
     }
@@ -104,7 +107,13 @@ fn binary_stl(bytes: &[u8]) -> Result<Vec<Point3<f64>>, MeshFileError> {
     Ok(bytes[STL_HEADER..]
         .chunks_exact(STL_TRIANGLE)
         .flat_map(|triangle| triangle[12..48].chunks_exact(12))
-        .map(|v| Point3::new(coordinate(&v[0..]), coordinate(&v[4..]), coordinate(&v[8..])))
+        .map(|v| {
+            Point3::new(
+                coordinate(&v[0..]),
+                coordinate(&v[4..]),
+                coordinate(&v[8..]),
+            )
+        })
         .collect())
 }
 

@@ -75,21 +75,13 @@ impl PoseSampling {
 /// The pose whose line of approach runs from `from · distance` to the origin.
 ///
 /// `from` is a direction of the object frame, `roll` (radians) turns about the approach.
-pub fn aimed(
-    hand: &Hand,
-    from: &UnitVector3<f64>,
-    distance: f64,
-    roll: f64,
-) -> Isometry3<f64> {
+pub fn aimed(hand: &Hand, from: &UnitVector3<f64>, distance: f64, roll: f64) -> Isometry3<f64> {
     let towards = -*from;
     let approach = hand.approach_axis();
     // Opposite directions have no shortest rotation; any half turn across does.
     let turn = UnitQuaternion::rotation_between(&approach, &towards).unwrap_or_else(|| {
         let (across, _) = sph::direction::tangent_frame(&approach);
-        UnitQuaternion::from_axis_angle(
-            &UnitVector3::new_normalize(across),
-            std::f64::consts::PI,
-        )
+        UnitQuaternion::from_axis_angle(&UnitVector3::new_normalize(across), std::f64::consts::PI)
     });
     let rotation = UnitQuaternion::from_axis_angle(&towards, roll) * turn;
     let point = Point3::from(from.into_inner() * distance);

@@ -94,7 +94,9 @@ pub enum UrdfError {
         second: String,
     },
     /// The links form no single tree.
-    #[error("the links are not one tree: {roots} links have no parent, and link '{link}' hangs on no root or on a second one")]
+    #[error(
+        "the links are not one tree: {roots} links have no parent, and link '{link}' hangs on no root or on a second one"
+    )]
     NotATree {
         /// Number of links without a parent.
         roots: usize,
@@ -125,7 +127,9 @@ pub enum UrdfError {
         upper: f64,
     },
     /// A joint of a kind that hands do not have.
-    #[error("joint '{joint}' is {kind}; fixed, revolute, continuous and prismatic joints are known")]
+    #[error(
+        "joint '{joint}' is {kind}; fixed, revolute, continuous and prismatic joints are known"
+    )]
     JointKind {
         /// The joint.
         joint: String,
@@ -172,8 +176,7 @@ pub fn load_urdf_with_meshes<E: std::fmt::Display>(
     mesh_bytes: impl Fn(&str) -> Result<Vec<u8>, E>,
 ) -> Result<HandModel, UrdfError> {
     guard::check_text(text)?;
-    let robot =
-        urdf_rs::read_from_string(text).map_err(|e| UrdfError::Parse(e.to_string()))?;
+    let robot = urdf_rs::read_from_string(text).map_err(|e| UrdfError::Parse(e.to_string()))?;
     check_counts(&robot)?;
     let resolve = |link: &str, file: &str| {
         let bytes = mesh_bytes(file).map_err(|e| mesh_error(link, file, e.to_string()))?;
@@ -185,6 +188,9 @@ pub fn load_urdf_with_meshes<E: std::fmt::Display>(
     }
     tree::build(&robot, geometry)
 }
+
+/// Vertices of a mesh by link and file name.
+type MeshResolver<'a> = dyn Fn(&str, &str) -> Result<Vec<Point3<f64>>, UrdfError> + 'a;
 
 fn mesh_error(link: &str, file: &str, reason: String) -> UrdfError {
     UrdfError::Mesh {
@@ -211,7 +217,7 @@ fn check_counts(robot: &urdf_rs::Robot) -> Result<(), UrdfError> {
 
 fn link_geometry(
     link: &urdf_rs::Link,
-    resolve: &dyn Fn(&str, &str) -> Result<Vec<Point3<f64>>, UrdfError>,
+    resolve: &MeshResolver<'_>,
 ) -> Result<Vec<LinkGeometry>, UrdfError> {
     if link.collision.len() > MAX_PIECES {
         return Err(UrdfError::TooMany {
@@ -234,7 +240,7 @@ fn link_geometry(
 fn geometry(
     link: &str,
     piece: &urdf_rs::Geometry,
-    resolve: &dyn Fn(&str, &str) -> Result<Vec<Point3<f64>>, UrdfError>,
+    resolve: &MeshResolver<'_>,
 ) -> Result<Geometry, UrdfError> {
     let half = |what, length: f64| Ok(positive(link, what, length)? / 2.0);
     Ok(match piece {

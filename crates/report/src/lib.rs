@@ -1,1 +1,45 @@
-//! report
+//! Pictures and pages: plain data in, one self-contained HTML page out.
+//!
+//! Two entry points, both of which return the whole page as a `String` and leave
+//! writing it to the caller:
+//!
+//! - [`grasp_page`]: the ranked grasps of one object, in a view that one can turn.
+//! - [`Page::to_html`]: headings, text, tables, and figures ([`Chart`], [`Bars`],
+//!   [`Histogram`], [`Scene`], [`SceneGrid`]) for the experiments.
+//!
+//! A page carries plotly.js inside and states a content policy under which a browser
+//! fetches nothing, so it opens without a network. All text given by the caller is
+//! plain text: it is escaped for HTML, for JSON and for the markup that plotly.js
+//! reads. Numbers must be finite; a page is refused with a [`ReportError`] that names
+//! the offending place otherwise. The same input gives the same bytes.
+//!
+//! This crate recomputes nothing and knows no shape, hand or quality.
+
+mod bars;
+mod chart;
+mod check;
+mod document;
+mod error;
+mod glyph;
+mod grasp_page;
+mod grasp_view;
+mod mesh;
+mod page;
+mod rounding;
+mod scene;
+mod scene_grid;
+mod scene_item;
+mod table;
+mod text;
+mod theme;
+
+pub use bars::{Bars, BarSeries, Histogram, Sample};
+pub use chart::{Axis, AxisScale, Chart, Mark, Series};
+pub use error::ReportError;
+pub use grasp_page::{GraspPage, PageGrasp, grasp_page};
+pub use mesh::Mesh;
+pub use page::{Block, Page, Section};
+pub use scene::Scene;
+pub use scene_grid::{SceneCell, SceneGrid};
+pub use scene_item::{Arrows, ColourScale, Item, Lines, Points, Surface};
+pub use table::Table;

@@ -1,5 +1,18 @@
-//! Reading clouds and writing meshes. Bytes in, values out; no file is opened here.
+//! Reading clouds and meshes, and writing meshes. Bytes in, values out; no file is opened here.
 
+mod error;
+mod geometry;
+mod load;
+mod lzf;
+mod obj;
+mod off;
+mod pcd;
 pub mod ply;
+mod stl;
+mod text;
+mod xyz;
 
-pub use ply::{PlyError, read_ply, write_ply};
+pub use error::{Format, LoadError};
+pub use geometry::{Geometry, Loaded, Warning};
+pub use load::read_cloud;
+pub use ply::{PlyError, PlyPoints, read_ply, write_ply};

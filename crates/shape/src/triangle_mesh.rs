@@ -1,6 +1,7 @@
 //! Triangle meshes, for collision checks and pictures.
 
 use nalgebra::{Point3, Vector3};
+use rand::{Rng, RngExt};
 
 /// Vertices in metres and triangles, counter-clockwise seen from outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,14 +58,37 @@ impl TriangleMesh {
 
     /// Total area, m².
     pub fn area(&self) -> f64 {
-        let corner = |i: u32| self.vertices[i as usize];
-        self.triangles
-            .iter()
-            .map(|&[a, b, c]| {
-                0.5 * (corner(b) - corner(a))
-                    .cross(&(corner(c) - corner(a)))
-                    .norm()
+        self.triangles.iter().map(|t| self.triangle_area(t)).sum()
+    }
+
+    /// `count` points spread over the surface by area, independent and uniform.
+    ///
+    /// Empty if the mesh has no area, or none that is finite. Costs count · log(triangles).
+    pub fn sample(&self, count: usize, rng: &mut impl Rng) -> Vec<Point3<f64>> {
+        let mut total = 0.0;
+        let mut cumulative = Vec::with_capacity(self.triangles.len());
+        for triangle in &self.triangles {
+            total += self.triangle_area(triangle);
+            cumulative.push(total);
+        }
+        if !(total > 0.0 && total.is_finite()) {
+            return Vec::new();
+        }
+        (0..count)
+            .map(|_| {
+                let at = rng.random::<f64>() * total;
+                let index = cumulative.partition_point(|sum| *sum <= at);
+                let index = index.min(self.triangles.len() - 1);
+                let [a, b, c] = self.triangles[index].map(|i| self.vertices[i as usize]);
+                // The square root makes the density even over the triangle.
+                let (s, t) = (rng.random::<f64>().sqrt(), rng.random::<f64>());
+                a + (b - a) * (s * (1.0 - t)) + (c - a) * (s * t)
             })
-            .sum()
+            .collect()
+    }
+
+    fn triangle_area(&self, triangle: &[u32; 3]) -> f64 {
+        let [a, b, c] = triangle.map(|i| self.vertices[i as usize]);
+        0.5 * (b - a).cross(&(c - a)).norm()
     }
 }

@@ -8,10 +8,15 @@ pub mod batch;
 pub mod bounds;
 pub mod coefficients;
 pub mod direction;
+mod fft;
 pub mod grid;
 pub mod index;
+mod kernel;
 mod legendre;
 pub mod regression;
+mod rings;
+pub mod scattered;
+mod torus;
 
 pub use basis::{Basis, Harmonic, Jet};
 pub use coefficients::{Coefficients, CoefficientsError};

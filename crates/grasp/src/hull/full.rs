@@ -1,10 +1,11 @@
 //! The full convex hull of points in R⁶, by adding the farthest point of every facet.
 
-use super::min_norm::{Corral, PointList, Support};
+use super::min_norm::Corral;
 use super::plane::{V6, add_scaled, dot, norm, scale};
 use super::polytope::{MAX_VERTICES, Polytope, cone_volume};
 use super::search::RELATIVE_TOLERANCE;
 use super::simplex::{Flat, Simplex, complete};
+use super::support::{PointList, Support};
 use crate::wrench::Wrench;
 use thiserror::Error;
 

@@ -1,19 +1,14 @@
 //! The point of a convex hull nearest to the origin (Wolfe 1976), from a support function alone.
 
 use super::plane::{V6, add_scaled, dot, norm, scale};
-
-/// A point of the hull farthest along a direction, and what the caller calls it.
-pub(crate) trait Support {
-    /// The farthest point along `direction`.
-    fn support(&mut self, direction: &V6) -> (V6, u32);
-}
+use super::support::Support;
 
 /// What the search found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Nearest {
-    /// The origin lies outside (or, within rounding, on the boundary): the nearest point and the
-    /// largest amount by which any support plane falls short of it.
-    Outside { point: V6, gap: f64 },
+    /// The origin lies outside (or, within rounding, on the boundary): the nearest point, and how
+    /// far a hyperplane orthogonal to it keeps the hull from the origin.
+    Outside { point: V6, floor: f64 },
     /// The origin lies in the hull of the corral, up to rounding.
     Inside,
 }
@@ -60,17 +55,14 @@ impl Corral {
     ) -> Nearest {
         self.len = 0;
         let (first, tag) = source.support(&scale(start, -1.0));
-        if effort == Effort::Separate && dot(start, &first) > tolerance * norm(start) {
-            let point = scale(start, dot(start, &first) / dot(start, start));
-            return Nearest::Outside {
-                point,
-                gap: f64::INFINITY,
-            };
+        let floor = dot(start, &first) / norm(start);
+        if effort == Effort::Separate && floor > tolerance {
+            let point = scale(start, floor / norm(start));
+            return Nearest::Outside { point, floor };
         }
         self.add(&first, tag);
         self.weights[0] = 1.0;
         let mut x = first;
-        let mut gap = f64::INFINITY;
         for _ in 0..ROUNDS {
             let length = norm(&x);
             if length <= tolerance {
@@ -78,22 +70,22 @@ impl Corral {
             }
             let (p, tag) = source.support(&scale(&x, -1.0));
             let floor = dot(&x, &p) / length;
-            gap = f64::min(gap, length - floor);
             let separated = effort == Effort::Separate && floor > tolerance;
-            if separated || length - floor <= 1e-14 * length || self.has(&p) {
-                break;
+            let nearest = separated || length - floor <= 1e-14 * length || self.has(&p);
+            if nearest || self.len == MOST || !self.add(&p, tag) || !self.descend() {
+                return Nearest::Outside { point: x, floor };
             }
-            if self.len == MOST || !self.add(&p, tag) || !self.descend() {
-                break;
-            }
-            let lower = self.combination();
+            let next = self.combination();
             // Progress that rounding eats is no progress.
-            if norm(&lower) >= length {
-                break;
+            if norm(&next) >= length {
+                return Nearest::Outside { point: x, floor };
             }
-            x = lower;
+            x = next;
         }
-        Nearest::Outside { point: x, gap }
+        Nearest::Outside {
+            point: x,
+            floor: 0.0,
+        }
     }
 
     fn has(&self, p: &V6) -> bool {
@@ -200,25 +192,9 @@ impl Corral {
     }
 }
 
-/// The farthest of a list of points.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PointList<'a>(pub(crate) &'a [V6]);
-
-impl Support for PointList<'_> {
-    fn support(&mut self, direction: &V6) -> (V6, u32) {
-        let mut best = (0, f64::NEG_INFINITY);
-        for (i, p) in self.0.iter().enumerate() {
-            let h = dot(p, direction);
-            if h > best.1 {
-                best = (i, h);
-            }
-        }
-        (self.0[best.0], best.0 as u32)
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::support::PointList;
     use super::*;
 
     fn run(points: &[V6]) -> (Nearest, Corral) {
@@ -232,11 +208,11 @@ mod tests {
         let a = [1.0, 3.0, 0.0, 0.0, 0.0, 0.0];
         let b = [1.0, -1.0, 2.0, 0.0, 0.0, 0.0];
         let c = [1.0, -1.0, -2.0, 0.0, 0.0, 0.0];
-        let (Nearest::Outside { point, gap }, _) = run(&[a, b, c]) else {
+        let (Nearest::Outside { point, floor }, _) = run(&[a, b, c]) else {
             panic!("the origin lies outside");
         };
         assert!((norm(&point) - 1.0).abs() <= 1e-14);
-        assert!(gap <= 1e-13);
+        assert!((floor - 1.0).abs() <= 1e-13);
     }
 
     #[test]

@@ -6,5 +6,6 @@ pub(crate) mod plane;
 pub(crate) mod polytope;
 pub(crate) mod search;
 pub(crate) mod simplex;
+pub(crate) mod support;
 
 pub use full::{ConvexHull, Facet, HullError};

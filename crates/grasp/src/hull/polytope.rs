@@ -40,6 +40,8 @@ pub(crate) struct Facet {
     links: [Link; 6],
     /// Set once the plane has been replaced by the best one for this simplex.
     pub(crate) settled: bool,
+    /// Set once no point is known to lie above.
+    pub(crate) finished: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -63,6 +65,8 @@ pub(crate) struct Polytope {
     pub(crate) keys: Vec<f64>,
     /// Facets made since `start`.
     pub(crate) created: usize,
+    /// The largest residual of any plane since `start`.
+    pub(crate) worst_residual: f64,
     /// The rounding error of a height: a few ulps of the longest vertex.
     rounding: f64,
     /// The facets that the last `start` or `insert` made.
@@ -86,6 +90,7 @@ impl Polytope {
         self.free.clear();
         self.fresh.clear();
         self.created = 0;
+        self.worst_residual = 0.0;
         self.rounding = 0.0;
         points.iter().for_each(|p| self.widen(p));
         self.epoch = 0;
@@ -114,6 +119,7 @@ impl Polytope {
                 vertices,
                 links,
                 settled: false,
+                finished: false,
             });
         }
     }
@@ -127,6 +133,14 @@ impl Polytope {
             }
         }
         best.0
+    }
+
+    /// The unfinished facet with the smallest offset, up to `level`.
+    pub(crate) fn nearest_open(&self, level: f64) -> Option<usize> {
+        let open = |&f: &usize| self.keys[f] <= level && !self.facets[f].finished;
+        (0..self.keys.len())
+            .filter(open)
+            .min_by(|&a, &b| self.keys[a].total_cmp(&self.keys[b]))
     }
 
     /// The numbers of the facets of the present surface.
@@ -230,6 +244,7 @@ impl Polytope {
             vertices,
             links,
             settled: false,
+            finished: false,
         });
         self.facets[beyond.facet()].links[beyond.slot()] = Link::new(facet, 5);
         for slot in 0..5 {
@@ -303,6 +318,7 @@ impl Polytope {
 
     fn push(&mut self, facet: Facet) -> u32 {
         self.created += 1;
+        self.worst_residual = self.worst_residual.max(facet.plane.residual);
         let key = facet.plane.offset;
         let at = match self.free.pop() {
             Some(at) => {

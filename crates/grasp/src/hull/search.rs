@@ -4,10 +4,11 @@
 //! its nearest facet is a lower bound of the ball's radius, the support function along that
 //! facet's normal an upper one; the search ends when they meet.
 
-use super::min_norm::{Corral, Effort, Nearest, PointList, Support};
+use super::min_norm::{Corral, Effort, Nearest};
 use super::plane::{Plane, V6, add_scaled, dot, norm, scale};
 use super::polytope::{MAX_VERTICES, Polytope};
 use super::simplex::{Flat, Simplex, complete};
+use super::support::{PointList, Support};
 
 /// The result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +35,10 @@ pub(crate) struct Search {
 /// Heights below this part of the longest point are rounding.
 pub(crate) const RELATIVE_TOLERANCE: f64 = 1e-12;
 
+/// What is tried in turn. Wrenches that miss a common hyperplane by about one tolerance leave facets
+/// too thin for a plane; to a wider or narrower tolerance the same wrenches are clear.
+const LADDER: [f64; 4] = [RELATIVE_TOLERANCE, 1e-10, 3e-14, 1e-9];
+
 impl Search {
     /// The largest origin-centred ball in the hull that `source` supports.
     ///
@@ -46,27 +51,58 @@ impl Search {
         reach: f64,
         gap: f64,
     ) -> Ball {
-        let tolerance = RELATIVE_TOLERANCE * reach;
-        let found = self
-            .corral
-            .nearest(source, toward, Effort::Separate, tolerance);
-        if let Nearest::Outside { point, gap } = found {
-            let separated = gap.is_infinite() || norm(&point) - gap > tolerance;
-            if separated {
-                return Ball::Open {
-                    direction: scale(&point, -1.0 / norm(&point)),
-                };
+        let found =
+            self.corral
+                .nearest(source, toward, Effort::Separate, RELATIVE_TOLERANCE * reach);
+        if let Nearest::Outside { point, floor } = found
+            && floor > RELATIVE_TOLERANCE * reach
+        {
+            return Ball::Open {
+                direction: scale(&point, -1.0 / norm(&point)),
+            };
+        }
+        let (mut low, mut high) = (0.0_f64, f64::INFINITY);
+        let mut best = Ball::Open { direction: *toward };
+        for relative in LADDER {
+            let tolerance = relative * reach;
+            let ball = match complete(&self.corral, source, tolerance) {
+                Err(Flat { normal }) => return Ball::Open { direction: normal },
+                Ok(Simplex { points, tags }) => {
+                    self.polytope.start(&points, &tags);
+                    self.grow(source, tolerance, gap)
+                }
+            };
+            let Ball::Closed {
+                lower,
+                upper,
+                direction,
+                facet,
+            } = ball
+            else {
+                return ball;
+            };
+            // Every attempt is a proof of its own: their intersection holds too.
+            low = low.max(lower);
+            high = high.min(upper);
+            best = Ball::Closed {
+                lower: low,
+                upper: high,
+                direction,
+                facet,
+            };
+            if high - low <= gap.max(1e-9 * reach.min(high)) {
+                break;
             }
         }
-        match complete(&self.corral, source, tolerance) {
-            Err(Flat { normal }) => Ball::Open { direction: normal },
-            Ok(Simplex { points, tags }) => {
-                self.polytope.start(&points, &tags);
-                self.grow(source, tolerance, gap)
-            }
+        match best {
+            Ball::Closed {
+                lower, direction, ..
+            } if lower <= RELATIVE_TOLERANCE * reach => Ball::Open { direction },
+            _ => best,
         }
     }
 
+    /// Expands the nearest facet until the bounds meet, or until rounding leaves nothing to do.
     fn grow(&mut self, source: &mut impl Support, tolerance: f64, gap: f64) -> Ball {
         let mut upper = f64::INFINITY;
         let mut direction = [0.0; 6];
@@ -81,20 +117,36 @@ impl Search {
             if upper <= tolerance {
                 return Ball::Open { direction };
             }
-            let lower = plane.offset - plane.residual;
-            let done = upper - lower <= gap.max(tolerance) || height - plane.offset <= tolerance;
-            if !done && self.expand(facet, &point, tag, tolerance) {
-                continue;
+            let lower = plane.offset - self.polytope.worst_residual;
+            let narrow = lower > tolerance && upper - lower <= gap;
+            let done = narrow || height - plane.offset <= tolerance;
+            if done || !self.expand(facet, &point, tag, tolerance) {
+                return Ball::Closed {
+                    lower: lower.min(upper),
+                    upper,
+                    direction,
+                    facet,
+                };
             }
-            if lower <= tolerance {
-                return Ball::Open { direction };
+        }
+    }
+
+    /// Goes on, after a ball was found, until no point lies above a facet of offset up to `level`
+    /// by more than `gap` (or rounding).
+    pub(crate) fn finish(
+        &mut self,
+        source: &mut impl Support,
+        level: f64,
+        gap: f64,
+        tolerance: f64,
+    ) {
+        while let Some(facet) = self.polytope.nearest_open(level) {
+            let plane = self.polytope.facets[facet].plane;
+            let (point, tag) = source.support(&plane.normal);
+            let above = dot(&plane.normal, &point) - plane.offset > gap.max(tolerance);
+            if !(above && self.expand(facet, &point, tag, tolerance)) {
+                self.polytope.facets[facet].finished = true;
             }
-            return Ball::Closed {
-                lower: lower.min(upper),
-                upper,
-                direction,
-                facet,
-            };
         }
     }
 

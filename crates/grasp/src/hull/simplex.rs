@@ -1,7 +1,8 @@
 //! Completing a few points of a hull to seven affinely independent ones.
 
-use super::min_norm::{Corral, Support};
+use super::min_norm::Corral;
 use super::plane::{V6, add_scaled, dot, norm, scale, sub};
+use super::support::Support;
 
 /// Seven affinely independent points and what the caller calls them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,7 +87,7 @@ fn complement(basis: &[V6]) -> V6 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::min_norm::PointList;
+    use super::super::support::PointList;
     use super::*;
 
     #[test]

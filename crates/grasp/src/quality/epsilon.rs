@@ -1,31 +1,14 @@
 //! Epsilon quality (Ferrari and Canny's L¹): the largest ball around the origin in the hull.
 
+use super::workspace::{Workspace, requested_gap};
 use crate::contact::{Contact, Grasp};
 use crate::convention::Convention;
+use crate::finger::Setup;
 use crate::hull::HullError;
-use crate::hull::min_norm::PointList;
-use crate::hull::plane::{V6, add_scaled, norm};
-use crate::hull::search::{Ball, Search};
-use crate::wrench::{Wrench, WrenchError, wrenches_into};
+use crate::hull::search::Ball;
+use crate::wrench::{Wrench, WrenchError};
 use nalgebra::Point3;
 use thiserror::Error;
-
-/// Scratch of quality computations: make one for each thread and pass it to every call.
-///
-/// It grows to the largest grasp seen and then no call allocates.
-#[derive(Clone, Debug, Default)]
-pub struct Workspace {
-    wrenches: Vec<Wrench>,
-    points: Vec<V6>,
-    search: Search,
-}
-
-impl Workspace {
-    /// Empty scratch.
-    pub fn new() -> Self {
-        Self::default()
-    }
-}
 
 /// The epsilon quality of a grasp as a certified interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,8 +22,8 @@ pub struct Epsilon {
     pub upper: f64,
     /// Whether the origin lies strictly inside: the grasp resists any small wrench.
     pub closed: bool,
-    /// The unit wrench direction in which the grasp is weakest; where it is not closed, one along
-    /// which it can push not at all.
+    /// The unit wrench direction in which the hull reaches only `upper` far; where the grasp is not
+    /// closed, one along which it can push not at all.
     pub direction: Wrench,
 }
 
@@ -54,7 +37,7 @@ impl Epsilon {
         }
     }
 
-    fn from_ball(ball: &Ball) -> Self {
+    pub(crate) fn from_ball(ball: &Ball) -> Self {
         match *ball {
             Ball::Open { direction } => Epsilon {
                 quality: 0.0,
@@ -80,33 +63,49 @@ impl Epsilon {
 }
 
 /// The epsilon quality Q = min over unit u of max_ij w_ij·u, 0 when that is negative.
+///
+/// Polygonal cones give the exact radius (an interval of some ulps of the longest wrench), round
+/// cones an interval of the width that the convention asks for. The result does not depend on the
+/// order of the contacts, and coplanar or repeated wrenches need no special care. A closed grasp of
+/// three contacts and eight edges costs some ten microseconds, an open one about one.
 pub fn epsilon(
     contacts: &[Contact],
     centre: &Point3<f64>,
     convention: &Convention,
     workspace: &mut Workspace,
 ) -> Result<Epsilon, QualityError> {
-    let mut wrenches = std::mem::take(&mut workspace.wrenches);
-    let filled = wrenches_into(contacts, centre, convention, &mut wrenches);
-    let result = filled
-        .map_err(QualityError::from)
-        .map(|()| epsilon_of_wrenches(&wrenches, workspace));
-    workspace.wrenches = wrenches;
-    result
+    let setup = Setup {
+        contacts,
+        centre,
+        convention,
+        fingers: &[],
+    };
+    epsilon_of(&setup, workspace)
 }
 
-/// The same for a plain list of wrenches (finite numbers), whatever they come from.
-pub fn epsilon_of_wrenches(wrenches: &[Wrench], workspace: &mut Workspace) -> Epsilon {
-    workspace.points.clear();
-    workspace
-        .points
-        .extend(wrenches.iter().map(|w| V6::from(*w)));
-    let points = &workspace.points;
-    let reach = points.iter().map(norm).fold(0.0, f64::max);
-    let toward = points.iter().fold([0.0; 6], |s, p| add_scaled(&s, 1.0, p));
-    let mut source = PointList(points);
-    let ball = workspace.search.ball(&mut source, &toward, reach, 0.0);
-    Epsilon::from_ball(&ball)
+/// The same for any fingers.
+pub fn epsilon_of(setup: &Setup<'_>, workspace: &mut Workspace) -> Result<Epsilon, QualityError> {
+    workspace.load(setup)?;
+    let ball = workspace.ball(requested_gap(setup.convention.edges));
+    Ok(Epsilon::from_ball(&ball))
+}
+
+/// The same for a plain list of wrenches, whatever they come from.
+pub fn epsilon_of_wrenches(
+    wrenches: &[Wrench],
+    workspace: &mut Workspace,
+) -> Result<Epsilon, QualityError> {
+    if let Some(index) = wrenches
+        .iter()
+        .position(|w| !w.iter().all(|x| x.is_finite()))
+    {
+        return Err(HullError::NotFinite { index }.into());
+    }
+    if wrenches.is_empty() {
+        return Err(HullError::Flat.into());
+    }
+    workspace.load_wrenches(wrenches);
+    Ok(Epsilon::from_ball(&workspace.ball(0.0)))
 }
 
 /// The number that the convention prints for a grasp, with scratch of its own.
@@ -114,6 +113,25 @@ pub fn epsilon_quality(grasp: &Grasp, convention: &Convention) -> Result<f64, Qu
     let mut workspace = Workspace::new();
     let found = epsilon(&grasp.contacts, &grasp.centre, convention, &mut workspace)?;
     Ok(found.value(convention))
+}
+
+/// Epsilon quality of many grasps, one result each, in `out` (cleared first).
+///
+/// Threads belong to the caller: give each a part of the grasps and a workspace of its own. Stops at
+/// the first grasp that has no quality and names it.
+pub fn epsilon_batch(
+    grasps: &[Grasp],
+    convention: &Convention,
+    workspace: &mut Workspace,
+    out: &mut Vec<Epsilon>,
+) -> Result<(), BatchError> {
+    out.clear();
+    for (index, grasp) in grasps.iter().enumerate() {
+        let found = epsilon(&grasp.contacts, &grasp.centre, convention, workspace)
+            .map_err(|source| BatchError { index, source })?;
+        out.push(found);
+    }
+    Ok(())
 }
 
 /// Why a grasp has no quality.
@@ -125,4 +143,14 @@ pub enum QualityError {
     /// The hull could not be built.
     #[error(transparent)]
     Hull(#[from] HullError),
+}
+
+/// The grasp of a batch that has no quality.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[error("grasp {index}: {source}")]
+pub struct BatchError {
+    /// The grasp, from 0.
+    pub index: usize,
+    /// What is wrong with it.
+    pub source: QualityError,
 }

@@ -10,8 +10,6 @@ use super::tree::{Content, Node, Tree};
 
 /// Nodes on the way down a balanced tree never exceed this.
 const STACK: usize = 64;
-#[allow(missing_docs)]
-pub static CNT:[std::sync::atomic::AtomicUsize;4]=[const{std::sync::atomic::AtomicUsize::new(0)};4];
 
 /// Why an object cannot take part in collision tests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
@@ -76,21 +74,34 @@ impl Gap {
     fn min(self, other: Gap) -> Gap {
         Gap {
             lower: self.lower.min(other.lower),
-            ..if other.upper < self.upper { other } else { self }
+            ..if other.upper < self.upper {
+                other
+            } else {
+                self
+            }
         }
     }
 }
 
 impl<'a> CollisionObject<'a> {
-    /// Circles of latitude of the default grid.
-    pub const ROWS: usize = 181;
-    /// Points a circle of the default grid.
-    pub const COLUMNS: usize = 360;
+    /// Facets are to stay this near to the surface, metres, where the finest grid allows.
+    pub const FACET_TOLERANCE: f64 = 5e-5;
+    /// The coarsest grid that [`Self::new`] tries; up to two times it is halved.
+    const COARSE_GRID: (usize, usize) = (121, 240);
 
-    /// Prepares a surface on the default grid, whose facets stay within 0.05 mm of the
-    /// shapes of household objects ([`Self::mesh_error`] says how near).
+    /// Prepares a surface on the coarsest of three grids whose facets stay within
+    /// [`Self::FACET_TOLERANCE`] of it ([`Self::mesh_error`] says how near they are).
     pub fn new(surface: &'a RadialShape) -> Result<Self, ObjectError> {
-        Self::with_grid(surface, Self::ROWS, Self::COLUMNS)
+        let (mut rows, mut columns) = Self::COARSE_GRID;
+        let mut mesh = surface.mesh(rows, columns);
+        for _ in 0..2 {
+            if facet_error(&mesh, columns) <= Self::FACET_TOLERANCE {
+                break;
+            }
+            (rows, columns) = (2 * rows - 1, 2 * columns);
+            mesh = surface.mesh(rows, columns);
+        }
+        Ok(Self::of_mesh(surface, &mesh, columns))
     }
 
     /// Prepares a surface on a grid of `rows` circles of latitude with `columns` points each.
@@ -102,13 +113,20 @@ impl<'a> CollisionObject<'a> {
         if !(8..=4096).contains(&rows) || !(8..=4096).contains(&columns) {
             return Err(ObjectError::Grid { rows, columns });
         }
-        let mesh = surface.mesh(rows, columns);
-        Ok(CollisionObject {
+        Ok(Self::of_mesh(
             surface,
-            tree: Tree::new(&mesh.vertices, &mesh.triangles),
+            &surface.mesh(rows, columns),
+            columns,
+        ))
+    }
+
+    fn of_mesh(surface: &'a RadialShape, mesh: &TriangleMesh, columns: usize) -> Self {
+        CollisionObject {
+            surface,
+            tree: Tree::new(&mesh.vertices, columns),
             outer_radius: surface.radius_bounds().1,
-            mesh_error: facet_error(&mesh, columns),
-        })
+            mesh_error: facet_error(mesh, columns),
+        }
     }
 
     /// The surface.
@@ -179,7 +197,6 @@ impl<'a> CollisionObject<'a> {
         object_from_piece: &Isometry3<f64>,
         precision: Precision,
     ) -> Gap {
-        CNT[0].fetch_add(1,std::sync::atomic::Ordering::Relaxed);
         let frame = PieceFrame::new(piece, object_from_piece);
         let mut gap = Gap::FAR;
         let mut stack = [(0.0, 0usize); STACK];
@@ -195,16 +212,14 @@ impl<'a> CollisionObject<'a> {
                 gap.lower = gap.lower.min(bound);
                 continue;
             }
-            CNT[1].fetch_add(1,std::sync::atomic::Ordering::Relaxed);
             match self.tree.nodes[index].content {
-                Content::Leaf { first, end } => {
-                    for triangle in &self.tree.triangles[first..end] {
-                        let least = frame.triangle_bound(triangle);
+                Content::Leaf(block) => {
+                    for triangle in self.tree.triangles(block) {
+                        let least = frame.triangle_bound(&triangle);
                         if least >= precision.settled(gap.upper) {
                             gap.lower = gap.lower.min(least);
                         } else {
-                    CNT[2].fetch_add(1,std::sync::atomic::Ordering::Relaxed);
-                            gap = gap.min(frame.triangle_gap(triangle));
+                            gap = gap.min(frame.triangle_gap(&triangle));
                         }
                     }
                 }
@@ -227,7 +242,11 @@ impl Precision {
     /// Patches farther than this cannot matter once a distance `upper` has been seen.
     fn settled(&self, upper: f64) -> f64 {
         let slack = self.absolute.max(self.relative * upper);
-        self.cutoff.min(if upper.is_finite() { upper - slack } else { upper })
+        self.cutoff.min(if upper.is_finite() {
+            upper - slack
+        } else {
+            upper
+        })
     }
 }
 
@@ -257,12 +276,15 @@ impl<'a> PieceFrame<'a> {
         self.piece_from_object * (p - self.origin)
     }
 
-    /// Lower and upper bound on the distance to a patch.
+    /// Lower and upper bound on the distance to a patch (see [`super::tree`]).
     fn bounds(&self, node: &Node) -> (f64, f64) {
-        let (low, high) = self.piece.distance_bounds(&self.local(&node.centre));
+        let at = self.piece.distance(&self.local(&node.centre));
         let normal = self.piece_from_object * node.normal;
-        let least = node.normal.dot(&self.origin) - self.piece.support(&-normal);
-        ((low - node.radius).max(least - node.top), high)
+        let along = at.slope.dot(&normal);
+        let across = (at.slope - normal * along).norm();
+        let height = if along < 0.0 { node.above } else { -node.below };
+        let fall = (along * height - across * node.radius).max(-node.radius);
+        (at.lower + fall, at.upper)
     }
 
     /// Both children with their lower bounds, the nearer first; the distance of a vertex
@@ -286,13 +308,13 @@ impl<'a> PieceFrame<'a> {
         if a.0 <= b.0 { (a, b) } else { (b, a) }
     }
 
-    /// Lower bound on the distance to a triangle, from the plane that it lies in.
+    /// Lower bound on the distance to a triangle, from the slope at its middle.
     fn triangle_bound(&self, corners: &[Vector3<f64>; 3]) -> f64 {
-        let [a, b, c] = corners;
-        let normal = (b - a).cross(&(c - a));
-        let normal = normal * (normal.dot(a).signum() / normal.norm());
-        let local = self.piece_from_object * normal;
-        normal.dot(&(self.origin - a)) - self.piece.support(&-local)
+        let local = corners.each_ref().map(|c| self.local(c));
+        let middle = (local[0] + local[1] + local[2]) / 3.0;
+        let at = self.piece.distance(&middle);
+        let fall = |c: &Vector3<f64>| at.slope.dot(&(c - middle));
+        at.lower + local.iter().map(fall).fold(f64::INFINITY, f64::min)
     }
 
     fn triangle_gap(&self, corners: &[Vector3<f64>; 3]) -> Gap {
@@ -325,4 +347,137 @@ fn facet_error(mesh: &TriangleMesh, columns: usize) -> f64 {
         }
     }
     largest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::collision::piece::to_parry;
+    use crate::model::{Geometry, LinkGeometry};
+    use parry3d_f64::shape::TriMesh;
+    use sph::Coefficients;
+
+    const EXACT: Precision = Precision {
+        cutoff: f64::INFINITY,
+        absolute: 0.0,
+        relative: 0.0,
+    };
+
+    fn lump() -> RadialShape {
+        let mut beta = Coefficients::constant(6, 0.12);
+        for (i, b) in beta.as_mut_slice().iter_mut().enumerate().skip(1) {
+            *b = 0.02 * (i as f64 * 2.3).sin() / (1.0 + 0.2 * i as f64);
+        }
+        RadialShape::new(beta).unwrap()
+    }
+
+    fn pieces() -> Vec<ConvexPiece> {
+        let corner = |k: usize| {
+            let side = |bit: usize| if k >> bit & 1 == 0 { -0.01 } else { 0.014 };
+            Point3::new(side(0), 2.0 * side(1), side(2))
+        };
+        let geometries = [
+            Geometry::Box {
+                half_extents: Vector3::new(0.01, 0.02, 0.03),
+            },
+            Geometry::Cylinder {
+                radius: 0.012,
+                half_length: 0.02,
+            },
+            Geometry::Capsule {
+                radius: 0.01,
+                half_length: 0.02,
+            },
+            Geometry::Sphere { radius: 0.015 },
+            Geometry::Hull {
+                points: (0..8).map(corner).collect(),
+            },
+        ];
+        geometries
+            .into_iter()
+            .map(|geometry| {
+                ConvexPiece::new(&LinkGeometry {
+                    link_from_geometry: Isometry3::identity(),
+                    geometry,
+                })
+                .unwrap()
+            })
+            .collect()
+    }
+
+    fn places(count: usize) -> impl Iterator<Item = Isometry3<f64>> {
+        (0..count).map(|k| {
+            let k = k as f64;
+            let away = 0.06 + 0.04 * (k * 0.7).sin().abs();
+            let p = Vector3::new((k * 1.1).sin(), (k * 1.7).cos(), (k * 0.9).sin());
+            Isometry3::new(
+                p.normalize() * away,
+                Vector3::new(k * 0.3, k * 0.5, (k * 0.2).cos()),
+            )
+        })
+    }
+
+    #[test]
+    fn gaps_agree_with_parry_on_the_same_mesh() {
+        let surface = lump();
+        let object = CollisionObject::with_grid(&surface, 61, 120).unwrap();
+        let mesh = surface.mesh(61, 120);
+        let vertices = mesh.vertices.iter().map(|v| to_parry(&v.coords)).collect();
+        let mesh = TriMesh::new(vertices, mesh.triangles).unwrap();
+        let mut apart = 0;
+        for piece in pieces() {
+            for place in places(60) {
+                let gap = object.piece_gap(&piece, &place, EXACT);
+                let expected = piece.shape_distance(&place, &mesh);
+                assert!((gap.lower - expected).abs() <= 1e-7, "{gap:?} {expected}");
+                assert!((gap.upper - expected).abs() <= 1e-7, "{gap:?} {expected}");
+                apart += usize::from(expected > 0.0);
+                let loose = Precision {
+                    cutoff: 0.03,
+                    absolute: 1e-4,
+                    relative: 0.2,
+                };
+                let rough = object.piece_gap(&piece, &place, loose);
+                assert!(rough.lower <= expected + 1e-7 && rough.upper >= expected - 1e-7);
+                assert!(rough.lower >= (0.8 * expected - 1e-4).min(0.03));
+            }
+        }
+        assert!(apart > 200);
+    }
+
+    #[test]
+    fn a_piece_wholly_inside_is_seen_although_the_mesh_is_hollow() {
+        let surface = RadialShape::sphere(4, 0.2).unwrap();
+        let object = CollisionObject::new(&surface).unwrap();
+        for piece in pieces() {
+            let link = LinkShape::new(vec![piece]);
+            let pose = Isometry3::translation(0.01, 0.02, 0.0);
+            assert!(object.link_gap(&link, &pose, EXACT).lower > 0.1);
+            assert!(object.holds_piece_of(&link, &pose));
+            assert!(!object.holds_piece_of(&link, &Isometry3::translation(0.0, 0.0, 0.3)));
+        }
+        assert!(object.contains(&Point3::origin()));
+    }
+
+    #[test]
+    fn a_sphere_keeps_its_distance_from_a_sphere() {
+        let surface = RadialShape::sphere(2, 0.05).unwrap();
+        let object = CollisionObject::new(&surface).unwrap();
+        let ball = &pieces()[3];
+        for place in places(40) {
+            let expected = place.translation.vector.norm() - 0.05 - 0.015;
+            let gap = object.piece_gap(ball, &place, EXACT);
+            let expected = expected.max(0.0);
+            assert!(gap.lower >= expected - 1e-9);
+            assert!(gap.upper <= expected + object.mesh_error() + 1e-9);
+        }
+        assert!(object.mesh_error() <= 2e-5);
+    }
+
+    #[test]
+    fn grids_out_of_range_are_refused() {
+        let surface = RadialShape::sphere(2, 0.05).unwrap();
+        assert!(CollisionObject::with_grid(&surface, 2, 100).is_err());
+        assert!(CollisionObject::with_grid(&surface, 100, 100_000).is_err());
+    }
 }

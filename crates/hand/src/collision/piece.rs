@@ -31,6 +31,15 @@ enum Form {
     Hull(Box<ConvexPolyhedron>, Vector3<f64>),
 }
 
+/// Bounds on the distance of a point from a piece, with the slope of the lower one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PointDistance {
+    pub(crate) lower: f64,
+    pub(crate) upper: f64,
+    /// Gradient of the lower bound, a unit vector outside the piece.
+    pub(crate) slope: Vector3<f64>,
+}
+
 /// A convex piece in its own frame, placed in a link.
 #[derive(Debug, Clone)]
 pub(crate) struct ConvexPiece {
@@ -42,7 +51,8 @@ pub(crate) struct ConvexPiece {
 
 impl ConvexPiece {
     pub(crate) fn new(placed: &LinkGeometry) -> Result<Self, GeometryError> {
-        let along_y = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::FRAC_PI_2);
+        let along_y =
+            UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::FRAC_PI_2);
         let mut link_from_piece = placed.link_from_geometry;
         let (form, radius) = match &placed.geometry {
             Geometry::Box { half_extents } => (
@@ -85,40 +95,55 @@ impl ConvexPiece {
         })
     }
 
-    /// Lower and upper bound of the signed distance from a point (piece frame) to the piece;
-    /// equal but for hulls, for which the bounding box gives the lower one.
-    pub(crate) fn distance_bounds(&self, p: &Vector3<f64>) -> (f64, f64) {
-        let exact = match &self.form {
-            Form::Cuboid(c) => box_distance(p, &from_parry(c.half_extents)),
+    /// The distance of a point (piece frame) from the piece and how it changes.
+    ///
+    /// Exact but for hulls, for which the bounding box gives the lower bound. Inside the
+    /// piece both bounds are 0 (a hull: the lower one) and the slope vanishes.
+    pub(crate) fn distance(&self, p: &Vector3<f64>) -> PointDistance {
+        let exact = |nearest: Vector3<f64>| {
+            let away = p - nearest;
+            let distance = away.norm();
+            let slope = if distance > 0.0 {
+                away / distance
+            } else {
+                away
+            };
+            PointDistance {
+                lower: distance,
+                upper: distance,
+                slope,
+            }
+        };
+        let rounded = |spine: Vector3<f64>, radius: f64| {
+            let away = p - spine;
+            let distance = away.norm();
+            exact(if distance > radius {
+                spine + away * (radius / distance)
+            } else {
+                *p
+            })
+        };
+        match &self.form {
+            Form::Cuboid(c) => exact(clamp_to_box(p, &from_parry(c.half_extents))),
             Form::Cylinder(c) => {
-                let radial = p.x.hypot(p.z) - c.radius;
-                let axial = p.y.abs() - c.half_height;
-                radial.max(axial).min(0.0) + radial.max(0.0).hypot(axial.max(0.0))
+                let radial = (p.x * p.x + p.z * p.z).sqrt();
+                let scale = if radial > c.radius {
+                    c.radius / radial
+                } else {
+                    1.0
+                };
+                let axial = p.y.clamp(-c.half_height, c.half_height);
+                exact(Vector3::new(p.x * scale, axial, p.z * scale))
             }
             Form::Capsule(c) => {
                 let half = c.segment.b.y.abs();
-                Vector3::new(p.x, (p.y.abs() - half).max(0.0), p.z).norm() - c.radius
+                rounded(Vector3::new(0.0, p.y.clamp(-half, half), 0.0), c.radius)
             }
-            Form::Ball(b) => p.norm() - b.radius,
-            Form::Hull(_, half) => return (box_distance(p, half), f64::INFINITY),
-        };
-        (exact, exact)
-    }
-
-    /// Support function: the greatest n·x over the piece, n a direction of the piece frame.
-    pub(crate) fn support(&self, n: &Vector3<f64>) -> f64 {
-        match &self.form {
-            Form::Cuboid(c) => n.abs().dot(&from_parry(c.half_extents)),
-            Form::Cylinder(c) => c.half_height * n.y.abs() + c.radius * n.x.hypot(n.z),
-            Form::Capsule(c) => c.segment.b.y.abs() * n.y.abs() + c.radius * n.norm(),
-            Form::Ball(b) => b.radius * n.norm(),
-            Form::Hull(hull, _) => {
-                let n = to_parry(n);
-                hull.points()
-                    .iter()
-                    .map(|p| n.dot(*p))
-                    .fold(f64::NEG_INFINITY, f64::max)
-            }
+            Form::Ball(b) => rounded(Vector3::zeros(), b.radius),
+            Form::Hull(_, half) => PointDistance {
+                upper: f64::INFINITY,
+                ..exact(clamp_to_box(p, half))
+            },
         }
     }
 
@@ -148,9 +173,7 @@ impl ConvexPiece {
             f64::MAX,
         );
         match found {
-            Ok(query::ClosestPoints::WithinMargin(p, q)) => {
-                ((p - q).length(), Some(from_parry(q)))
-            }
+            Ok(query::ClosestPoints::WithinMargin(p, q)) => ((p - q).length(), Some(from_parry(q))),
             _ => (0.0, None),
         }
     }
@@ -158,6 +181,17 @@ impl ConvexPiece {
     /// The point of the piece closest to a point outside it, both in the piece frame.
     pub(crate) fn closest_point(&self, p: &Vector3<f64>) -> Vector3<f64> {
         from_parry(self.shape().project_local_point(to_parry(p), true).point)
+    }
+
+    /// Distance to any shape of parry that is at rest in the world.
+    #[cfg(test)]
+    pub(crate) fn shape_distance(
+        &self,
+        world_from_self: &Isometry3<f64>,
+        other: &dyn Shape,
+    ) -> f64 {
+        query::distance(&pose(world_from_self), self.shape(), &Pose::IDENTITY, other)
+            .map_or(f64::NAN, |d| d.distance)
     }
 
     /// Distance to another piece, 0 where they meet.
@@ -249,15 +283,14 @@ fn bounding_box(points: &[Point3<f64>]) -> (Point3<f64>, Vector3<f64>) {
     let Some(first) = points.first() else {
         return (Point3::origin(), Vector3::zeros());
     };
-    let (low, high) = points.iter().fold((*first, *first), |(low, high), p| {
-        (low.inf(p), high.sup(p))
-    });
+    let (low, high) = points
+        .iter()
+        .fold((*first, *first), |(low, high), p| (low.inf(p), high.sup(p)));
     (nalgebra::center(&low, &high), (high - low) / 2.0)
 }
 
-fn box_distance(p: &Vector3<f64>, half: &Vector3<f64>) -> f64 {
-    let d = p.abs() - half;
-    d.map(|c| c.max(0.0)).norm() + d.max().min(0.0)
+fn clamp_to_box(p: &Vector3<f64>, half: &Vector3<f64>) -> Vector3<f64> {
+    p.zip_map(half, |c, h| c.clamp(-h, h))
 }
 
 /// parry's vector of a nalgebra one.

@@ -1,26 +1,34 @@
 //! A hierarchy of surface patches, each with a sphere and a slab around it.
 //!
-//! A patch lies in the sphere of radius ρ about one of its own vertices c, and below
-//! the plane n·x = top, n being its mean outward normal. With d(c) the signed distance
-//! of c from a convex piece K, dist(K, patch) is at most d(c), at least d(c) − ρ, and
-//! at least min_K n·x − top. Where the surface is smooth the nearest patch has its
-//! normal along the line to K, so the second bound is good to second order in the
-//! patch's size and few patches survive.
+//! A patch lies in the sphere of radius ρ about one of its own vertices c and in the slab
+//! −below ≤ n·(x − c) ≤ above, n being its mean outward normal. The distance d to a
+//! convex piece is a convex function, so with its slope g at c, over the patch
+//! d(x) ≥ d(c) + g·(x − c) ≥ d(c) + min over the slab of (g·n) h − ρ |g − (g·n) n|,
+//! while d(c) itself bounds the least distance from above. Where patch and piece face
+//! each other g ≈ −n, so both bounds agree to second order in the patch's size and few
+//! patches survive.
 
 use nalgebra::{Point3, Vector3};
 
 use super::piece::direction_or_z;
 
-/// Triangles in a leaf.
-const LEAF_TRIANGLES: usize = 4;
+/// Cells in a leaf.
+const LEAF_CELLS: usize = 2;
 
 /// What a node holds.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Content {
-    /// Triangles of this range.
-    Leaf { first: usize, end: usize },
+    /// The cells of a block of the grid.
+    Leaf(Block),
     /// Two nodes.
     Inner { left: usize, right: usize },
+}
+
+/// Cells of these rows and columns; a cell has its first corner at its row and column.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Block {
+    rows: (usize, usize),
+    columns: (usize, usize),
 }
 
 /// A patch of the surface.
@@ -29,100 +37,113 @@ pub(super) struct Node {
     pub(super) centre: Vector3<f64>,
     pub(super) radius: f64,
     pub(super) normal: Vector3<f64>,
-    pub(super) top: f64,
+    pub(super) above: f64,
+    pub(super) below: f64,
     pub(super) content: Content,
 }
 
-/// The triangles in the order of the leaves, and the nodes with the root first.
+/// The vertices of a (θ,φ) grid, ring after ring, and the nodes over its cells, the root first.
 #[derive(Debug, Clone)]
 pub(super) struct Tree {
     pub(super) nodes: Vec<Node>,
-    pub(super) triangles: Vec<[Vector3<f64>; 3]>,
+    vertices: Vec<Vector3<f64>>,
+    columns: usize,
 }
 
 impl Tree {
-    /// Builds the hierarchy of a star-shaped surface about the origin.
-    ///
-    /// Triangles without area are dropped. O(n log n).
-    pub(super) fn new(vertices: &[Point3<f64>], triangles: &[[u32; 3]]) -> Self {
-        let mut corners: Vec<[Vector3<f64>; 3]> = triangles
-            .iter()
-            .map(|t| t.map(|v| vertices[v as usize].coords))
-            .filter(|t| double_area(t).norm() > 0.0)
-            .collect();
-        let mut nodes = Vec::with_capacity(corners.len());
-        if !corners.is_empty() {
-            let count = corners.len();
-            build(&mut nodes, &mut corners, 0, count);
-        }
-        Tree {
-            nodes,
-            triangles: corners,
-        }
-    }
-}
-
-fn double_area(t: &[Vector3<f64>; 3]) -> Vector3<f64> {
-    (t[1] - t[0]).cross(&(t[2] - t[0]))
-}
-
-/// Appends the node of triangles first..end and everything below it; returns its index.
-fn build(
-    nodes: &mut Vec<Node>,
-    triangles: &mut [[Vector3<f64>; 3]],
-    first: usize,
-    end: usize,
-) -> usize {
-    let index = nodes.len();
-    nodes.push(patch(&triangles[first..end], first, end));
-    if end - first > LEAF_TRIANGLES {
-        let axis = longest_axis(&triangles[first..end]);
-        let middle = (end - first) / 2;
-        triangles[first..end].select_nth_unstable_by(middle, |a, b| {
-            let key = |t: &[Vector3<f64>; 3]| t[0][axis] + t[1][axis] + t[2][axis];
-            key(a).total_cmp(&key(b))
+    /// Builds the hierarchy over a grid from pole to pole. O(n log n).
+    pub(super) fn new(vertices: &[Point3<f64>], columns: usize) -> Self {
+        let mut tree = Tree {
+            nodes: Vec::with_capacity(vertices.len() + 1),
+            vertices: vertices.iter().map(|v| v.coords).collect(),
+            columns,
+        };
+        let rows = vertices.len() / columns;
+        tree.build(Block {
+            rows: (0, rows - 1),
+            columns: (0, columns),
         });
-        let left = build(nodes, triangles, first, first + middle);
-        let right = build(nodes, triangles, first + middle, end);
-        nodes[index].content = Content::Inner { left, right };
+        tree
     }
-    index
-}
 
-fn patch(triangles: &[[Vector3<f64>; 3]], first: usize, end: usize) -> Node {
-    let mut mean = Vector3::zeros();
-    let mut normal = Vector3::zeros();
-    for t in triangles {
-        mean += t[0] + t[1] + t[2];
-        let area = double_area(t);
-        // The surface is star-shaped about the origin, so outward is away from it.
-        normal += area * area.dot(&t[0]).signum();
+    fn at(&self, row: usize, column: usize) -> Vector3<f64> {
+        self.vertices[row * self.columns + column % self.columns]
     }
-    mean /= 3.0 * triangles.len() as f64;
-    let normal = direction_or_z(&normal).into_inner();
-    let corners = || triangles.iter().flatten();
-    let nearest = |best: Vector3<f64>, v: &Vector3<f64>| {
-        if (v - mean).norm_squared() < (best - mean).norm_squared() {
-            *v
-        } else {
-            best
+
+    /// The two triangles of every cell of a block; those at the poles may be degenerate.
+    pub(super) fn triangles(&self, block: Block) -> impl Iterator<Item = [Vector3<f64>; 3]> + '_ {
+        let cells = (block.rows.0..block.rows.1)
+            .flat_map(move |r| (block.columns.0..block.columns.1).map(move |c| (r, c)));
+        cells.flat_map(|(r, c)| {
+            let corner = self.at(r, c);
+            let across = self.at(r + 1, c + 1);
+            [
+                [corner, self.at(r + 1, c), across],
+                [corner, across, self.at(r, c + 1)],
+            ]
+        })
+    }
+
+    /// Appends the node of a block and everything below it; returns its index.
+    fn build(&mut self, block: Block) -> usize {
+        let index = self.nodes.len();
+        let node = self.patch(block);
+        self.nodes.push(node);
+        if let Some((first, second)) = self.split(block) {
+            let left = self.build(first);
+            let right = self.build(second);
+            self.nodes[index].content = Content::Inner { left, right };
         }
-    };
-    let centre = corners().fold(triangles[0][0], nearest);
-    Node {
-        radius: corners().map(|v| (v - centre).norm()).fold(0.0, f64::max),
-        top: corners().map(|v| normal.dot(v)).fold(f64::NEG_INFINITY, f64::max),
-        centre,
-        normal,
-        content: Content::Leaf { first, end },
+        index
     }
-}
 
-fn longest_axis(triangles: &[[Vector3<f64>; 3]]) -> usize {
-    let start = triangles[0][0];
-    let (low, high) = triangles
-        .iter()
-        .flatten()
-        .fold((start, start), |(low, high), v| (low.inf(v), high.sup(v)));
-    (high - low).imax()
+    fn patch(&self, block: Block) -> Node {
+        let ((r0, r1), (c0, c1)) = (block.rows, block.columns);
+        let centre = self.at((r0 + r1) / 2, (c0 + c1) / 2);
+        let down = self.at(r1, c1) - self.at(r0, c0);
+        let up = self.at(r0, c1) - self.at(r1, c0);
+        let mut normal = direction_or_z(&down.cross(&up)).into_inner();
+        if normal.dot(&centre) < 0.0 {
+            normal = -normal;
+        }
+        let (mut radius, mut above, mut below): (f64, f64, f64) = (0.0, 0.0, 0.0);
+        for row in r0..=r1 {
+            for column in c0..=c1 {
+                let offset = self.at(row, column) - centre;
+                let height = normal.dot(&offset);
+                radius = radius.max(offset.norm_squared());
+                above = above.max(height);
+                below = below.max(-height);
+            }
+        }
+        Node {
+            centre,
+            radius: radius.sqrt(),
+            normal,
+            above,
+            below,
+            content: Content::Leaf(block),
+        }
+    }
+
+    /// Halves a block across its longer side; none when it is a leaf.
+    fn split(&self, block: Block) -> Option<(Block, Block)> {
+        let ((r0, r1), (c0, c1)) = (block.rows, block.columns);
+        if (r1 - r0) * (c1 - c0) <= LEAF_CELLS {
+            return None;
+        }
+        let middle = self.at((r0 + r1) / 2, (c0 + c1) / 2);
+        let rows = self.vertices.len() / self.columns;
+        let height = (r1 - r0) as f64 * std::f64::consts::PI / (rows - 1) as f64;
+        let ring = middle.xy().norm() / middle.norm();
+        let width = (c1 - c0) as f64 * ring * std::f64::consts::TAU / self.columns as f64;
+        let part = |rows, columns| Block { rows, columns };
+        Some(if c1 - c0 == 1 || (r1 - r0 > 1 && height >= width) {
+            let cut = (r0 + r1) / 2;
+            (part((r0, cut), (c0, c1)), part((cut, r1), (c0, c1)))
+        } else {
+            let cut = (c0 + c1) / 2;
+            (part((r0, r1), (c0, cut)), part((r0, r1), (cut, c1)))
+        })
+    }
 }

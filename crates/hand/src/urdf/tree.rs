@@ -29,7 +29,12 @@ pub(super) fn build(
         .zip(&drives)
         .map(|(joint, &drive)| {
             let place = |name: &str| new_of[link_of[name]];
-            moving_joint(joint, place(&joint.parent.link), place(&joint.child.link), drive)
+            moving_joint(
+                joint,
+                place(&joint.parent.link),
+                place(&joint.child.link),
+                drive,
+            )
         })
         .collect::<Result<Vec<_>, _>>()?;
     let mut geometry: Vec<_> = geometry.into_iter().map(Some).collect();
@@ -165,7 +170,11 @@ fn follow_mimic(
             of: mimic.joint.clone(),
             why,
         };
-        let factor = number(&joint.name, "mimic multiplier", mimic.multiplier.unwrap_or(1.0))?;
+        let factor = number(
+            &joint.name,
+            "mimic multiplier",
+            mimic.multiplier.unwrap_or(1.0),
+        )?;
         offset += multiplier * number(&joint.name, "mimic offset", mimic.offset.unwrap_or(0.0))?;
         multiplier *= factor;
         at = *index_of

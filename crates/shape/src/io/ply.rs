@@ -4,9 +4,13 @@ use std::borrow::Cow;
 use std::io::Write;
 
 use nalgebra::Point3;
-use ply_rs_bw::parser::Parser;
-use ply_rs_bw::ply::{DefaultElement, Property};
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
+use ply_rs_bw::ply::{
+    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyDef,
+    PropertyType, ScalarType,
+};
 
+use super::geometry::{Raw, fan};
 use crate::triangle_mesh::TriangleMesh;
 
 /// Why bytes are not a usable PLY file.
@@ -29,6 +33,16 @@ pub enum PlyError {
         /// x, y or z.
         property: &'static str,
     },
+    /// A face names a vertex that the file does not have.
+    #[error("face {index} of the PLY file has corner {corner}; expected numbers below {vertices}")]
+    Corner {
+        /// Which face.
+        index: usize,
+        /// The number it names.
+        corner: u32,
+        /// Vertices in the file.
+        vertices: usize,
+    },
 }
 
 /// Vertices of a PLY file; rows with NaN or infinite coordinates are dropped and counted.
@@ -42,35 +56,180 @@ pub struct PlyPoints {
 
 /// Reads the vertices of a PLY file.
 pub fn read_ply(bytes: &[u8]) -> Result<PlyPoints, PlyError> {
-    let parser = Parser::<DefaultElement>::new();
-    let bytes = without_nan_words(bytes);
-    let mut reader = bytes.as_ref();
-    let ply = parser
-        .read_ply(&mut reader)
-        .map_err(|error| PlyError::Parse {
-            reason: error.to_string(),
-        })?;
-    let vertices = ply.payload.get("vertex").ok_or(PlyError::NoVertices)?;
-    let mut points = Vec::with_capacity(vertices.len());
-    for (index, vertex) in vertices.iter().enumerate() {
-        let coordinate = |property: &'static str| {
-            vertex
-                .get(property)
-                .and_then(number)
-                .ok_or(PlyError::Coordinate { index, property })
-        };
-        points.push(Point3::new(
-            coordinate("x")?,
-            coordinate("y")?,
-            coordinate("z")?,
-        ));
-    }
-    let read = points.len();
+    let mut points = read(bytes)?.vertices;
+    let count = points.len();
     points.retain(|p| p.iter().all(|x| x.is_finite()));
     Ok(PlyPoints {
-        dropped: read - points.len(),
+        dropped: count - points.len(),
         points,
     })
+}
+
+/// Vertices, finite or not, and faces as fans of triangles.
+pub(super) fn read(bytes: &[u8]) -> Result<Raw, PlyError> {
+    let bytes = without_nan_words(bytes);
+    let mut reader = Reader::new(bytes.as_ref());
+    let header = Parser::<Skipped>::new()
+        .read_header(&mut reader)
+        .map_err(damage)?;
+    let mut rows: Option<Vec<Vertex>> = None;
+    let mut faces: Vec<Face> = Vec::new();
+    for (name, element) in &header.elements {
+        let rest = reader.get_ref().len();
+        check_size(element, header.encoding, rest, bytes.len() - rest)?;
+        match name.as_str() {
+            "vertex" => rows = Some(elements(&mut reader, element, &header, bytes.len())?),
+            "face" => faces = elements(&mut reader, element, &header, bytes.len())?,
+            _ => {
+                elements::<Skipped>(&mut reader, element, &header, bytes.len())?;
+            }
+        }
+    }
+    let vertices = rows.ok_or(PlyError::NoVertices)?;
+    let vertices: Vec<Point3<f64>> = vertices
+        .iter()
+        .enumerate()
+        .map(|(index, row)| point(index, row))
+        .collect::<Result<_, _>>()?;
+    Ok(Raw {
+        triangles: triangles(&faces, vertices.len())?,
+        vertices,
+    })
+}
+
+fn point(index: usize, row: &Vertex) -> Result<Point3<f64>, PlyError> {
+    let [x, y, z] = row.0;
+    let named =
+        |value: Option<f64>, property| value.ok_or(PlyError::Coordinate { index, property });
+    Ok(Point3::new(named(x, "x")?, named(y, "y")?, named(z, "z")?))
+}
+
+fn triangles(faces: &[Face], vertices: usize) -> Result<Vec<[u32; 3]>, PlyError> {
+    let mut triangles = Vec::with_capacity(faces.len());
+    for (index, face) in faces.iter().enumerate() {
+        if let Some(&corner) = face.0.iter().find(|c| **c as usize >= vertices) {
+            return Err(PlyError::Corner {
+                index,
+                corner,
+                vertices,
+            });
+        }
+        fan(&face.0, &mut triangles);
+    }
+    Ok(triangles)
+}
+
+fn elements<E: PropertyAccess>(
+    reader: &mut Reader<&[u8]>,
+    element: &ElementDef,
+    header: &Header,
+    length: usize,
+) -> Result<Vec<E>, PlyError> {
+    let rows = Parser::<E>::new().read_payload_for_element(reader, element, header);
+    rows.map_err(|error| match header.encoding {
+        Encoding::Ascii => damage(error),
+        // The parser counts rows of binary data as lines; the byte says more.
+        _ => {
+            let byte = length - reader.get_ref().len();
+            let PlyError::Parse { reason } = damage(error) else {
+                return PlyError::NoVertices;
+            };
+            let reason = format!("byte {byte}, element `{}`: {reason}", element.name);
+            PlyError::Parse { reason }
+        }
+    })
+}
+
+/// Refuses a count of rows that the rest of the file cannot hold.
+fn check_size(
+    element: &ElementDef,
+    encoding: Encoding,
+    rest: usize,
+    byte: usize,
+) -> Result<(), PlyError> {
+    let width = |scalar: &ScalarType| match scalar {
+        ScalarType::Char | ScalarType::UChar => 1,
+        ScalarType::Short | ScalarType::UShort => 2,
+        ScalarType::Int | ScalarType::UInt | ScalarType::Float => 4,
+        ScalarType::Double => 8,
+    };
+    let least = |property: &PropertyDef| match (&property.data_type, encoding) {
+        (_, Encoding::Ascii) => 1,
+        (PropertyType::Scalar(scalar) | PropertyType::List(scalar, _), _) => width(scalar),
+    };
+    let row: usize = element.properties.values().map(least).sum();
+    let needed = element.count.checked_mul(row.max(1));
+    if needed.is_some_and(|needed| needed <= rest) {
+        return Ok(());
+    }
+    let (count, name) = (element.count, &element.name);
+    let reason = format!(
+        "expected {count} rows of `{name}`, at least {row} bytes each, from byte {byte}; found {rest} bytes"
+    );
+    Err(PlyError::Parse { reason })
+}
+
+fn damage(error: ParseError) -> PlyError {
+    const LONGEST: usize = 200;
+    let text = error.to_string();
+    let words: Vec<&str> = text.split_whitespace().collect();
+    PlyError::Parse {
+        reason: words.join(" ").chars().take(LONGEST).collect(),
+    }
+}
+
+/// x, y and z as far as the row has them.
+struct Vertex([Option<f64>; 3]);
+
+/// Corners of a polygon.
+struct Face(Vec<u32>);
+
+/// A row that is read over.
+struct Skipped;
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self([None; 3])
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        match ["x", "y", "z"].iter().position(|axis| *axis == name) {
+            Some(axis) => {
+                self.0[axis] = number(&value);
+                PropertyAccessResult::Set
+            }
+            None => PropertyAccessResult::Ignored,
+        }
+    }
+}
+
+impl PropertyAccess for Face {
+    fn new() -> Self {
+        Self(Vec::new())
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        if !matches!(name, "vertex_indices" | "vertex_index") {
+            return PropertyAccessResult::Ignored;
+        }
+        // Negative numbers become too large ones, which the check of corners names.
+        self.0 = match value {
+            Property::ListChar(list) => list.iter().map(|i| *i as u32).collect(),
+            Property::ListUChar(list) => list.iter().map(|i| u32::from(*i)).collect(),
+            Property::ListShort(list) => list.iter().map(|i| *i as u32).collect(),
+            Property::ListUShort(list) => list.iter().map(|i| u32::from(*i)).collect(),
+            Property::ListInt(list) => list.iter().map(|i| *i as u32).collect(),
+            Property::ListUInt(list) => list,
+            _ => return PropertyAccessResult::UnsupportedType,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+impl PropertyAccess for Skipped {
+    fn new() -> Self {
+        Self
+    }
 }
 
 /// ASCII bodies with `nan` and `inf` rewritten as numbers that overflow to infinity.

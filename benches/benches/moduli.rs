@@ -1,0 +1,33 @@
+//! The moduli space: one quality, one step of the paper's ascent.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use grasp::Convention;
+use moduli::{Objective, PaperAscent};
+use nalgebra::Point3;
+use shape::RadialShape;
+use sph::{Coefficients, SphericalCoords, index};
+
+fn bench(criterion: &mut Criterion) {
+    let mut beta = Coefficients::constant(50, 0.04);
+    beta.as_mut_slice()[index::position(2, 0)] = 0.01;
+    beta.as_mut_slice()[index::position(3, 1)] = 0.003;
+    let shape = RadialShape::new(beta).expect("a positive radius");
+    let start = [(1.5, 0.1), (1.7, 2.3), (1.4, 4.0)]
+        .map(|(theta, phi)| SphericalCoords { theta, phi }.direction());
+    let convention = Convention::named("paper").expect("a known name");
+    let mut objective = Objective::new(&convention, &shape, &Point3::origin());
+    criterion.bench_function("moduli/quality at three directions L=50", |bencher| {
+        bencher.iter(|| objective.quality_at(&shape, &start))
+    });
+    let ascent = PaperAscent {
+        steps: 10,
+        delta: 1e-5,
+        rate: 0.01,
+    };
+    criterion.bench_function("moduli/ten steps of the paper's ascent L=50", |bencher| {
+        bencher.iter(|| ascent.climb(&shape, &start, &mut objective, |_| {}))
+    });
+}
+
+criterion_group!(benches, bench);
+criterion_main!(benches);

@@ -1,0 +1,9 @@
+//! One module a command.
+
+pub(crate) mod distance;
+pub(crate) mod eval;
+pub(crate) mod fit;
+pub(crate) mod grasp;
+pub(crate) mod info;
+pub(crate) mod mesh;
+pub(crate) mod quality;

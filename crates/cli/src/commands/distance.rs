@@ -1,0 +1,56 @@
+//! `moduli distance`: how far shapes are from each other.
+
+use serde::Serialize;
+
+use crate::args::{Common, DistanceOptions};
+use crate::failure::Failure;
+use crate::plan::library;
+use crate::{input, output};
+
+#[derive(Serialize)]
+struct DistanceLine {
+    a: String,
+    b: String,
+    distance_m: f64,
+}
+
+pub(crate) fn run(options: &DistanceOptions, common: &Common) -> Result<(), Failure> {
+    let mut shapes = Vec::new();
+    for path in &options.shapes {
+        let record = input::shape_record(path)?;
+        let beta = record
+            .coefficients()
+            .map_err(|e| Failure::input(path, e))?;
+        shapes.push((record.name, beta));
+    }
+    if shapes.len() == 1 {
+        for entry in &library::built_in()?.entries {
+            let beta = entry
+                .shape
+                .coefficients()
+                .map_err(|e| Failure::other(format!("{}: {e}", entry.id)))?;
+            shapes.push((format!("{} {}", entry.id, entry.name), beta));
+        }
+    }
+    let anchors = if options.shapes.len() == 1 { 1 } else { shapes.len() };
+    for (i, (a, beta_a)) in shapes[..anchors].iter().enumerate() {
+        for (b, beta_b) in &shapes[i + 1..] {
+            let line = DistanceLine {
+                a: a.clone(),
+                b: b.clone(),
+                distance_m: beta_a.distance(beta_b),
+            };
+            if common.json {
+                output::say_json(&line)?;
+            } else {
+                output::say(format!(
+                    "{:24} {:32} {:9.3} mm",
+                    line.a,
+                    line.b,
+                    1e3 * line.distance_m
+                ));
+            }
+        }
+    }
+    Ok(())
+}

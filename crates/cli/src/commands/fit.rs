@@ -1,0 +1,97 @@
+//! `moduli fit`: clouds to certified shapes.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use record::ShapeRecord;
+use serde::Serialize;
+
+use crate::args::{Common, FitOptions};
+use crate::failure::Failure;
+use crate::{input, output};
+
+#[derive(Serialize)]
+struct FitLine {
+    cloud: String,
+    points: usize,
+    degree: usize,
+    lambda: f64,
+    rms_m: f64,
+    max_abs_m: f64,
+    r_min_certified_m: f64,
+    r_max_certified_m: f64,
+    in_m_rad: bool,
+    condition: f64,
+    centre_m: [f64; 3],
+    seconds: f64,
+}
+
+pub(crate) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> {
+    if !common.json {
+        output::say(format!(
+            "{:28} {:>7} {:>3} {:>9} {:>8} {:>8} {:>17} {:>9} {:>7}",
+            "cloud", "points", "L", "lambda", "rms mm", "max mm", "r certified mm", "cond", "s"
+        ));
+    }
+    for path in &options.clouds {
+        let line = fit_one(path, options)?;
+        if common.json {
+            output::say_json(&line)?;
+        } else {
+            output::say(format!(
+                "{:28} {:>7} {:>3} {:>9.2e} {:>8.3} {:>8.3} {:>8.2} {:>8.2} {:>9.2} {:>7.2}",
+                input::stem(path),
+                line.points,
+                line.degree,
+                line.lambda,
+                1e3 * line.rms_m,
+                1e3 * line.max_abs_m,
+                1e3 * line.r_min_certified_m,
+                1e3 * line.r_max_certified_m,
+                line.condition,
+                line.seconds
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn fit_one(path: &Path, options: &FitOptions) -> Result<FitLine, Failure> {
+    let cloud = input::cloud(path, &options.cloud)?;
+    let start = Instant::now();
+    let fit = input::fit(&cloud, &path.display().to_string(), &options.cloud)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let points = cloud.points().len();
+    if let Some(target) = target(path, options) {
+        let bytes = ShapeRecord::of_fit(&input::stem(path), &fit, points)
+            .to_bytes()
+            .map_err(|e| Failure::other(e.to_string()))?;
+        output::write_file(&target, &bytes)?;
+    }
+    let (r_min, r_max) = fit.shape.radius_bounds();
+    Ok(FitLine {
+        cloud: path.display().to_string(),
+        points,
+        degree: fit.shape.degree(),
+        lambda: fit.lambda,
+        rms_m: fit.rms,
+        max_abs_m: fit.max_abs,
+        r_min_certified_m: r_min,
+        r_max_certified_m: r_max,
+        // A shape that is not cannot be made: `fit` has refused before.
+        in_m_rad: r_min > 0.0,
+        condition: fit.condition,
+        centre_m: fit.centre_in_cloud.into(),
+        seconds,
+    })
+}
+
+/// The file that a cloud's shape goes to.
+fn target(cloud: &Path, options: &FitOptions) -> Option<PathBuf> {
+    let output = options.output.as_ref()?;
+    Some(if options.clouds.len() == 1 {
+        output.clone()
+    } else {
+        output.join(format!("{}.shape", input::stem(cloud)))
+    })
+}

@@ -1,0 +1,81 @@
+//! `moduli info`: what a file holds.
+
+use record::{GraspsFile, Kind, LibraryRecord, ShapeRecord, envelope};
+
+use crate::args::InfoOptions;
+use crate::failure::Failure;
+use crate::{input, output};
+
+pub(crate) fn run(options: &InfoOptions) -> Result<(), Failure> {
+    let path = &options.file;
+    let bytes = input::read(path)?;
+    let lines = match envelope::kind_of(&bytes) {
+        Some(Kind::Shape) => {
+            let record = ShapeRecord::from_bytes(&bytes).map_err(|e| Failure::input(path, e))?;
+            shape_lines(&record).map_err(|e| Failure::input(path, e))?
+        }
+        Some(Kind::Library) => {
+            let record = LibraryRecord::from_bytes(&bytes).map_err(|e| Failure::input(path, e))?;
+            library_lines(&record)
+        }
+        None => match serde_json::from_slice::<GraspsFile>(&bytes) {
+            Ok(file) => grasps_lines(&file),
+            Err(_) => {
+                let read = shape::io::read_ply(&bytes).map_err(|e| Failure::input(path, e))?;
+                let cloud =
+                    shape::PointCloud::new(read.points).map_err(|e| Failure::input(path, e))?;
+                cloud_lines(&cloud, read.dropped)
+            }
+        },
+    };
+    lines.iter().for_each(output::say);
+    Ok(())
+}
+
+fn shape_lines(record: &ShapeRecord) -> Result<Vec<String>, record::ShapeRecordError> {
+    let shape = record.shape()?;
+    let (low, high) = shape.radius_bounds();
+    let mass = shape.mass_properties();
+    Ok(vec![
+        format!("shape       {}", record.name),
+        format!("degree      {}", shape.degree()),
+        format!("certified   {:.3} mm ≤ r ≤ {:.3} mm", 1e3 * low, 1e3 * high),
+        format!("fit         {} points, rms {:.3} mm, λ {:.3e}", record.points, 1e3 * record.rms_m, record.lambda),
+        format!("volume      {:.2} cm³", 1e6 * mass.volume),
+        format!("centre      {:?} m in the frame of the cloud", record.centre_in_cloud_m),
+    ])
+}
+
+fn library_lines(record: &LibraryRecord) -> Vec<String> {
+    let head = format!(
+        "library     {} objects, hand {}, convention {}, seed {}",
+        record.entries.len(),
+        record.hand,
+        record.convention,
+        record.seed
+    );
+    let entries = record.entries.iter().map(|e| {
+        let best = e.grasps.first().map_or(0.0, |g| g.quality);
+        format!("{:4} {:24} {:3} grasps, best {:.3}", e.id, e.name, e.grasps.len(), best)
+    });
+    std::iter::once(head).chain(entries).collect()
+}
+
+fn grasps_lines(file: &GraspsFile) -> Vec<String> {
+    let best = file.grasps.first().map_or(0.0, |g| g.quality);
+    vec![
+        format!("grasps      {} on {}", file.grasps.len(), file.object.name),
+        format!("convention  {}", file.convention.name),
+        format!("best        {best:.4}"),
+    ]
+}
+
+fn cloud_lines(cloud: &shape::PointCloud, dropped: usize) -> Vec<String> {
+    let size = 1e3 * cloud.extent();
+    let mean = cloud.mean();
+    vec![
+        format!("cloud       {} points, {dropped} rows dropped", cloud.points().len()),
+        format!("extent      {:.1} × {:.1} × {:.1} mm, if the unit is metres", size.x, size.y, size.z),
+        format!("mean        {:.5} {:.5} {:.5}", mean.x, mean.y, mean.z),
+    ]
+}

@@ -1,0 +1,46 @@
+//! What can go wrong, and with which exit code.
+
+use std::fmt::Display;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// A failure with its message and its exit code (2 usage, 3 input, 4 numbers, 1 anything else).
+#[derive(Debug)]
+pub(crate) struct Failure {
+    code: u8,
+    /// One sentence for people: what, where, what was expected.
+    pub(crate) message: String,
+}
+
+impl Failure {
+    /// The command line asks for something that cannot be.
+    pub(crate) fn usage(message: impl Into<String>) -> Self {
+        Self::new(2, message)
+    }
+
+    /// A file is not what it should be.
+    pub(crate) fn input(path: &Path, reason: impl Display) -> Self {
+        Self::new(3, format!("{}: {reason}", path.display()))
+    }
+
+    /// The numbers refuse: no valid surface, no closed grasp.
+    pub(crate) fn refused(message: impl Into<String>) -> Self {
+        Self::new(4, message)
+    }
+
+    /// Anything else, such as a full disk.
+    pub(crate) fn other(message: impl Into<String>) -> Self {
+        Self::new(1, message)
+    }
+
+    fn new(code: u8, message: impl Into<String>) -> Self {
+        Self {
+            code,
+            message: message.into(),
+        }
+    }
+
+    pub(crate) fn exit_code(&self) -> ExitCode {
+        ExitCode::from(self.code)
+    }
+}

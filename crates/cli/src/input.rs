@@ -1,0 +1,94 @@
+//! Files of the user: clouds, shapes, grasps.
+
+use std::path::Path;
+
+use grasp::{Convention, Edges, TorqueLength};
+use record::ShapeRecord;
+use shape::{Fit, FitError, FitSettings, PointCloud};
+
+use crate::args::{CloudOptions, ConventionOptions};
+use crate::failure::Failure;
+use crate::output::warn;
+
+/// The bytes of a file.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+    std::fs::read(path).map_err(|e| Failure::input(path, e))
+}
+
+/// A readable name for what a file holds.
+pub(crate) fn stem(path: &Path) -> String {
+    path.file_stem()
+        .map_or_else(|| "object".to_owned(), |s| s.to_string_lossy().into_owned())
+}
+
+/// A cloud in metres, with warnings about what was dropped and about units that look wrong.
+pub(crate) fn cloud(path: &Path, options: &CloudOptions) -> Result<PointCloud, Failure> {
+    let read = shape::io::read_ply(&read(path)?).map_err(|e| Failure::input(path, e))?;
+    if read.dropped > 0 {
+        warn(format!(
+            "{}: {} rows without finite coordinates dropped",
+            path.display(),
+            read.dropped
+        ));
+    }
+    let cloud = PointCloud::new(read.points)
+        .and_then(|cloud| cloud.scaled(options.unit.metres()))
+        .map_err(|e| Failure::input(path, e))?;
+    let extent = cloud.extent().max();
+    if !(0.005..=2.0).contains(&extent) {
+        warn(format!(
+            "{}: the object is {extent:.4} m across; is the unit right? (--unit mm, cm, m, in)",
+            path.display()
+        ));
+    }
+    Ok(cloud)
+}
+
+/// Fits a cloud; numerical refusals say what to try.
+pub(crate) fn fit(cloud: &PointCloud, name: &str, options: &CloudOptions) -> Result<Fit, Failure> {
+    let settings = FitSettings {
+        degree: options.degree,
+        lambda: options.lambda,
+    };
+    shape::fit::fit(cloud, &settings).map_err(|e| match e {
+        FitError::Regression(sph::regression::RegressionError::Penalty { lambda }) => {
+            Failure::usage(format!("--lambda {lambda}: expected a number ≥ 0"))
+        }
+        other => Failure::refused(format!("{name}: {other}")),
+    })
+}
+
+/// A shape file.
+pub(crate) fn shape_record(path: &Path) -> Result<ShapeRecord, Failure> {
+    ShapeRecord::from_bytes(&read(path)?).map_err(|e| Failure::input(path, e))
+}
+
+/// The convention that the options name and change.
+pub(crate) fn convention(options: &ConventionOptions) -> Result<Convention, Failure> {
+    let mut convention =
+        Convention::named(&options.convention).map_err(|e| Failure::usage(e.to_string()))?;
+    if let Some(friction) = options.friction {
+        convention.friction = friction;
+    }
+    if let Some(length) = options.torque_length {
+        convention.torque_length = TorqueLength::Metres(length);
+    }
+    match options.edges.as_deref() {
+        None => {}
+        Some("round") => {
+            convention.edges = Edges::Round {
+                tolerance: options.tolerance,
+            };
+        }
+        Some(count) => {
+            let count = count.parse().map_err(|_| {
+                Failure::usage(format!("--edges {count}: expected a number or `round`"))
+            })?;
+            convention.edges = Edges::Polygon(count);
+        }
+    }
+    convention
+        .validate()
+        .map_err(|e| Failure::usage(e.to_string()))?;
+    Ok(convention)
+}

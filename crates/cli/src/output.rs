@@ -1,0 +1,70 @@
+//! Where words and files leave the program.
+
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+use std::io::IsTerminal;
+use std::path::Path;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use crate::failure::Failure;
+
+/// A line of the result.
+pub(crate) fn say(line: impl AsRef<str>) {
+    println!("{}", line.as_ref());
+}
+
+/// A result as one line of JSON.
+pub(crate) fn say_json(value: &impl Serialize) -> Result<(), Failure> {
+    let line = serde_json::to_string(value)
+        .map_err(|e| Failure::other(format!("cannot write the result as JSON: {e}")))?;
+    println!("{line}");
+    Ok(())
+}
+
+/// Something the user should know, that stops nothing.
+pub(crate) fn warn(line: impl AsRef<str>) {
+    eprintln!("warning: {}", line.as_ref());
+}
+
+/// The last words of a program that failed.
+pub(crate) fn report_failure(failure: &Failure) {
+    eprintln!("error: {}", failure.message);
+}
+
+/// A bar on a terminal, nothing elsewhere.
+pub(crate) fn progress(quiet: bool, total: usize, what: &str) -> ProgressBar {
+    if quiet || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(total as u64);
+    if let Ok(style) = ProgressStyle::with_template("{msg:24} {wide_bar} {pos}/{len}") {
+        bar.set_style(style);
+    }
+    bar.set_message(what.to_owned());
+    bar
+}
+
+/// Writes a whole file: to a temporary name beside it, then renamed, so that no half file is left.
+pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let fail = |e: std::io::Error| Failure::other(format!("cannot write {}: {e}", path.display()));
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+    if let Some(folder) = folder {
+        std::fs::create_dir_all(folder).map_err(fail)?;
+    }
+    let name = path
+        .file_name()
+        .ok_or_else(|| Failure::usage(format!("{} names no file", path.display())))?;
+    let temporary = path.with_file_name(format!(
+        ".{}.{}.part",
+        name.to_string_lossy(),
+        std::process::id()
+    ));
+    std::fs::write(&temporary, bytes).map_err(fail)?;
+    std::fs::rename(&temporary, path).map_err(|e| {
+        // The error that matters is the rename's.
+        let _ = std::fs::remove_file(&temporary);
+        fail(e)
+    })
+}

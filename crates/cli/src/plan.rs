@@ -1,0 +1,59 @@
+//! The main job: candidates by transfer and by synthesis, ranked.
+
+pub(crate) mod library;
+pub(crate) mod page;
+pub(crate) mod ranking;
+pub(crate) mod synthesis;
+pub(crate) mod transfer;
+
+use grasp::{Contact, Convention};
+use nalgebra::{Isometry3, Point3};
+use shape::Fit;
+
+/// The object that is grasped, and how quality is measured on it.
+pub(crate) struct Target<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) fit: &'a Fit,
+    /// With everything that the surface decides filled in.
+    pub(crate) convention: Convention,
+    /// The point about which torques are taken, centred frame.
+    pub(crate) centre: Point3<f64>,
+}
+
+impl Target<'_> {
+    /// Origin of the user's frame in the centred frame.
+    pub(crate) fn object_origin(&self) -> Point3<f64> {
+        Point3::from(-self.fit.centre_in_cloud.coords)
+    }
+}
+
+/// A grasp on the target, centred frame, not yet ranked.
+#[derive(Clone, Debug)]
+pub(crate) struct Candidate {
+    pub(crate) contacts: Vec<Contact>,
+    pub(crate) quality: f64,
+    pub(crate) source: Source,
+    pub(crate) hand: Option<HandPlacement>,
+}
+
+/// Where a candidate comes from.
+#[derive(Clone, Debug)]
+pub(crate) enum Source {
+    Transfer {
+        /// Id and name of the library object.
+        from: String,
+        /// Distance of its shape from the target's, metres.
+        shape_distance: f64,
+        /// Quality on the library object.
+        source_quality: f64,
+    },
+    Synthesis,
+}
+
+/// A hand at a grasp, centred frame.
+#[derive(Clone, Debug)]
+pub(crate) struct HandPlacement {
+    pub(crate) object_from_palm: Isometry3<f64>,
+    /// In the order of the hand's driven joints.
+    pub(crate) joints: Vec<f64>,
+}

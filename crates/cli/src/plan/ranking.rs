@@ -1,0 +1,123 @@
+//! Candidates in order, written in the frame of the user's cloud.
+
+use std::collections::BTreeMap;
+
+use hand::Hand;
+use nalgebra::{Isometry3, Point3, Translation3};
+use record::grasps::{
+    ConventionRecord, GRASPS_VERSION, HandRecord, ObjectRecord, PoseRecord, SourceRecord,
+};
+use record::{GraspRecord, GraspsFile};
+use shape::Surface;
+
+use super::{Candidate, HandPlacement, Source, Target};
+
+/// Force-closed candidates, the best first; equal ones stay in the order they were found.
+pub(crate) fn rank(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
+    candidates.retain(|c| c.quality > 0.0);
+    candidates.sort_by(|a, b| b.quality.total_cmp(&a.quality));
+    candidates
+}
+
+/// The file that `grasp` writes.
+pub(crate) fn grasps_file(target: &Target, hand: &Hand, ranked: &[Candidate]) -> GraspsFile {
+    let shape = &target.fit.shape;
+    let centre = target.fit.centre_in_cloud;
+    let (r_min, r_max) = shape.radius_bounds();
+    GraspsFile {
+        version: GRASPS_VERSION,
+        object: ObjectRecord {
+            name: target.name.to_owned(),
+            centre_m: centre.into(),
+            r_min_certified_m: r_min,
+            r_max_certified_m: r_max,
+            centre_of_mass_m: in_cloud(&shape.centre_of_mass(), &centre),
+            volume_m3: shape.mass_properties().volume,
+        },
+        convention: ConventionRecord::from(&target.convention),
+        grasps: ranked
+            .iter()
+            .enumerate()
+            .map(|(i, c)| grasp_record(i + 1, c, hand, &centre))
+            .collect(),
+    }
+}
+
+/// A point of the centred frame in the frame of the cloud.
+pub(crate) fn in_cloud(p: &Point3<f64>, centre: &Point3<f64>) -> [f64; 3] {
+    (p + centre.coords).into()
+}
+
+fn grasp_record(
+    rank: usize,
+    candidate: &Candidate,
+    hand: &Hand,
+    centre: &Point3<f64>,
+) -> GraspRecord {
+    GraspRecord {
+        rank,
+        quality: candidate.quality,
+        contacts_m: candidate
+            .contacts
+            .iter()
+            .map(|c| in_cloud(&c.position, centre))
+            .collect(),
+        inward_normals: candidate
+            .contacts
+            .iter()
+            .map(|c| c.inward_normal.into_inner().into())
+            .collect(),
+        source: source_record(&candidate.source),
+        hand: candidate
+            .hand
+            .as_ref()
+            .map(|placement| hand_record(placement, hand, centre)),
+    }
+}
+
+fn source_record(source: &Source) -> SourceRecord {
+    match source {
+        Source::Synthesis => SourceRecord {
+            kind: "synthesis".to_owned(),
+            from: None,
+            shape_distance_m: None,
+            source_quality: None,
+        },
+        Source::Transfer {
+            from,
+            shape_distance,
+            source_quality,
+        } => SourceRecord {
+            kind: "transfer".to_owned(),
+            from: Some(from.clone()),
+            shape_distance_m: Some(*shape_distance),
+            source_quality: Some(*source_quality),
+        },
+    }
+}
+
+/// The palm's pose in the frame of the cloud.
+pub(crate) fn cloud_from_palm(
+    placement: &HandPlacement,
+    centre: &Point3<f64>,
+) -> Isometry3<f64> {
+    Translation3::from(centre.coords) * placement.object_from_palm
+}
+
+fn hand_record(placement: &HandPlacement, hand: &Hand, centre: &Point3<f64>) -> HandRecord {
+    let pose = cloud_from_palm(placement, centre);
+    let joints: BTreeMap<String, f64> = hand
+        .model()
+        .driven_names()
+        .map(str::to_owned)
+        .zip(placement.joints.iter().copied())
+        .collect();
+    HandRecord {
+        name: hand.name().to_owned(),
+        object_from_palm: PoseRecord {
+            translation_m: pose.translation.vector.into(),
+            quaternion_xyzw: pose.rotation.coords.into(),
+        },
+        joints_rad: joints,
+    }
+}

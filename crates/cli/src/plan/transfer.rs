@@ -1,0 +1,130 @@
+//! Candidates carried over from the nearest library objects.
+
+use indicatif::ProgressBar;
+use moduli::point::contacts_on;
+use moduli::transfer::Transfer;
+use moduli::{PaperAscent, PaperTransfer};
+use rayon::prelude::*;
+use record::{LibraryEntry, LibraryRecord};
+use shape::RadialShape;
+use sph::Direction;
+
+use super::{Candidate, Source, Target};
+use crate::failure::Failure;
+
+/// How much is transferred.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TransferPlan {
+    /// Library objects, the nearest first.
+    pub(crate) neighbours: usize,
+    /// Best grasps of each.
+    pub(crate) grasps: usize,
+}
+
+/// A library object near the target.
+pub(crate) struct Neighbour<'a> {
+    pub(crate) entry: &'a LibraryEntry,
+    /// Metres.
+    pub(crate) distance: f64,
+    shape: RadialShape,
+}
+
+/// The library objects nearest to the target by d (Sec. III-A), the nearest first.
+pub(crate) fn neighbours<'a>(
+    target: &Target,
+    library: &'a LibraryRecord,
+    count: usize,
+) -> Result<Vec<Neighbour<'a>>, Failure> {
+    let beta = target.fit.shape.coefficients();
+    let broken = |entry: &LibraryEntry, e: record::ShapeRecordError| {
+        Failure::other(format!("library object {}: {e}", entry.id))
+    };
+    let mut order = Vec::new();
+    for entry in &library.entries {
+        let other = entry.shape.coefficients().map_err(|e| broken(entry, e))?;
+        order.push((entry, beta.distance(&other)));
+    }
+    order.sort_by(|a, b| a.1.total_cmp(&b.1));
+    order
+        .into_par_iter()
+        .take(count)
+        .map(|(entry, distance)| {
+            Ok(Neighbour {
+                entry,
+                distance,
+                shape: entry.shape.shape().map_err(|e| broken(entry, e))?,
+            })
+        })
+        .collect()
+}
+
+/// The best grasps of every neighbour, carried to the target.
+///
+/// The paper's scheme (Sec. IV-E) with fewer steps a station and a longer last climb; what ends
+/// open is kept as a candidate of quality 0.
+pub(crate) fn candidates(
+    target: &Target,
+    neighbours: &[Neighbour],
+    plan: &TransferPlan,
+    progress: &ProgressBar,
+) -> Result<Vec<Candidate>, Failure> {
+    let mut jobs = Vec::new();
+    for neighbour in neighbours {
+        for grasp in neighbour.entry.grasps.iter().take(plan.grasps) {
+            let directions = grasp.directions().ok_or_else(|| {
+                Failure::other(format!(
+                    "library object {}: a contact is no unit vector",
+                    neighbour.entry.id
+                ))
+            })?;
+            jobs.push((neighbour, directions, grasp.quality));
+        }
+    }
+    progress.set_length(jobs.len() as u64);
+    jobs.into_par_iter()
+        .map(|(neighbour, directions, source_quality)| {
+            let candidate = carry(target, neighbour, &directions, source_quality)?;
+            progress.inc(1);
+            Ok(candidate)
+        })
+        .collect()
+}
+
+fn carry(
+    target: &Target,
+    neighbour: &Neighbour,
+    directions: &[Direction],
+    source_quality: f64,
+) -> Result<Candidate, Failure> {
+    let failed = |e: moduli::TransferError| {
+        Failure::refused(format!("transfer from {}: {e}", neighbour.entry.id))
+    };
+    let transfer = Transfer {
+        from: &neighbour.shape,
+        to: &target.fit.shape,
+        convention: &target.convention,
+        object_origin: target.object_origin(),
+    };
+    let scheme = PaperTransfer {
+        intervals: 10,
+        ascent: PaperAscent {
+            steps: 20,
+            delta: 1e-5,
+            rate: 0.01,
+        },
+    };
+    let stations = scheme.stations(&transfer).map_err(failed)?;
+    let arrived = scheme
+        .carry(&transfer, &stations, directions, |_, _| {})
+        .map_err(failed)?;
+    Ok(Candidate {
+        contacts: contacts_on(&target.fit.shape, &arrived.contacts),
+        quality: arrived.quality,
+        source: Source::Transfer {
+            from: format!("{} {}", neighbour.entry.id, neighbour.entry.name),
+            shape_distance: neighbour.distance,
+            source_quality,
+        },
+        hand: None,
+    })
+}

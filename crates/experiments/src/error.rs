@@ -1,0 +1,90 @@
+//! What can stop an experiment.
+
+use std::path::PathBuf;
+
+/// Why an experiment has no result.
+#[derive(Debug, thiserror::Error)]
+pub enum ExperimentError {
+    /// A folder of clouds cannot be listed.
+    #[error("cannot read the folder {path}: {reason}")]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// What the system says.
+        reason: std::io::Error,
+    },
+    /// Too few objects are left.
+    #[error("{fitted} of {given} objects of {source_name} can be used; expected at least {needed}{reasons}")]
+    TooFewObjects {
+        /// Objects with a fitted surface.
+        fitted: usize,
+        /// Objects found.
+        given: usize,
+        /// Objects needed.
+        needed: usize,
+        /// Where they come from.
+        source_name: String,
+        /// Why others were refused, one line each.
+        reasons: String,
+    },
+    /// No grasp was found where one is needed.
+    #[error("no stable grasp of {poses} poses on any object; more poses may help")]
+    NoGrasps {
+        /// Poses tried on each object.
+        poses: usize,
+    },
+    /// A fit failed.
+    #[error("{id}: {source}")]
+    Fit {
+        /// The object.
+        id: String,
+        /// Why.
+        source: shape::FitError,
+    },
+    /// Points make no cloud.
+    #[error(transparent)]
+    Cloud(#[from] shape::CloudError),
+    /// A regression failed.
+    #[error(transparent)]
+    Regression(#[from] sph::regression::RegressionError),
+    /// The built-in hand could not be loaded.
+    #[error(transparent)]
+    Hand(#[from] hand::LoadError),
+    /// The object cannot take part in collision tests.
+    #[error(transparent)]
+    Collision(#[from] hand::ObjectError),
+    /// A quality could not be computed.
+    #[error(transparent)]
+    Quality(#[from] grasp::QualityError),
+    /// Shapes could not be combined.
+    #[error(transparent)]
+    Space(#[from] shape::space::SpaceError),
+    /// A transfer failed.
+    #[error(transparent)]
+    Transfer(#[from] moduli::TransferError),
+    /// A result could not be written.
+    #[error("cannot write {path}: {reason}")]
+    Output {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system says.
+        reason: std::io::Error,
+    },
+    /// A result could not be put into JSON.
+    #[error("cannot write JSON: {0}")]
+    Json(#[from] serde_json::Error),
+    /// Threads could not be started.
+    #[error(transparent)]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+impl ExperimentError {
+    /// 3 for bad input, 4 for a refusal on numerical grounds, 1 for anything else.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Folder { .. } | Self::TooFewObjects { .. } | Self::Cloud(_) => 3,
+            Self::Output { .. } | Self::Json(_) | Self::Threads(_) | Self::Hand(_) => 1,
+            _ => 4,
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! What every experiment's program does around its section.
+
+use std::io::Write;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use serde_json::json;
+
+use crate::args::Args;
+use crate::error::ExperimentError;
+use crate::output::{Findings, describe_convention, write};
+use crate::paper;
+use crate::run::{Run, fit_settings};
+
+/// A section of the paper as a function.
+pub type Section = fn(&Run) -> Result<Findings, ExperimentError>;
+
+/// Reads the command line, runs the section on its own pool of threads, writes `OUT/<name>.json`
+/// and prints the table. Exit codes: 0 done, 2 usage, 3 bad input, 4 numerical refusal, 1 else.
+pub fn main(name: &'static str, about: &'static str, section: Section) -> ExitCode {
+    let args = match Args::read(name, about, std::env::args_os()) {
+        Ok(args) => args,
+        Err(error) => error.exit(),
+    };
+    match execute(name, &args, section) {
+        Ok(text) => {
+            // A reader that has gone away is no failure of the experiment.
+            let _ = writeln!(std::io::stdout(), "{text}");
+            ExitCode::SUCCESS
+        }
+        Err(error) => fail(name, &error),
+    }
+}
+
+/// Says on stderr why a program of this name stops, and gives its exit code.
+pub fn fail(name: &str, error: &ExperimentError) -> ExitCode {
+    let _ = writeln!(std::io::stderr(), "{name}: {error}");
+    ExitCode::from(error.exit_code())
+}
+
+/// Runs a section as the arguments say and writes its JSON; the text is the table for people.
+pub fn execute(name: &str, args: &Args, section: Section) -> Result<String, ExperimentError> {
+    let start = Instant::now();
+    let progress = |what: &str| {
+        if !args.quiet {
+            let seconds = start.elapsed().as_secs_f64();
+            let _ = writeln!(std::io::stderr(), "{name} {seconds:7.1} s: {what}");
+        }
+    };
+    let run = Run {
+        objects: args.objects.clone(),
+        scale: args.scale,
+        seed: args.seed,
+        convention: args.convention.clone(),
+        fit: fit_settings(paper::DEGREE, None),
+        progress: &progress,
+    };
+    let threads = args.threads.unwrap_or(0);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let findings = pool.install(|| section(&run))?;
+    let seconds = start.elapsed().as_secs_f64();
+    let value = json!({
+        "experiment": name,
+        "scale": args.scale,
+        "seed": args.seed,
+        "threads": pool.current_num_threads(),
+        "objects": findings.objects,
+        "convention": describe_convention(&args.convention),
+        "paper": findings.paper,
+        "ours": findings.ours,
+        "seconds": seconds,
+    });
+    let path = write(&args.out, &format!("{name}.json"), &serde_json::to_vec_pretty(&value)?)?;
+    let mut text = findings.table.to_string();
+    for refused in findings.objects["refused"].as_array().into_iter().flatten() {
+        let word = |key: &str| refused[key].as_str().unwrap_or_default().to_owned();
+        text += &format!("refused {}: {}\n", word("id"), word("reason"));
+    }
+    text += &format!("{seconds:.1} s, {}", path.display());
+    Ok(text)
+}

@@ -1,0 +1,98 @@
+//! One run of an experiment: its settings, as values.
+
+use clap::ValueEnum;
+use grasp::Convention;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+use shape::FitSettings;
+
+use crate::objects::ObjectSource;
+use crate::paper;
+
+/// How much is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Scale {
+    /// The same computation on fewer objects, poses, grasps or steps; seconds.
+    Small,
+    /// The numbers of the paper.
+    Full,
+}
+
+impl Scale {
+    /// The value for this scale.
+    pub fn pick<T>(self, small: T, full: T) -> T {
+        match self {
+            Scale::Small => small,
+            Scale::Full => full,
+        }
+    }
+}
+
+/// Everything that a section is told.
+pub struct Run<'a> {
+    /// Where the objects come from.
+    pub objects: ObjectSource,
+    /// How much is computed.
+    pub scale: Scale,
+    /// The seed of every random number.
+    pub seed: u64,
+    /// How quality is measured.
+    pub convention: Convention,
+    /// How clouds become surfaces.
+    pub fit: FitSettings,
+    /// Hears what is being done.
+    pub progress: &'a (dyn Fn(&str) + Sync),
+}
+
+/// L and λ as settings of a fit; λ is chosen from the data when absent.
+pub fn fit_settings(degree: usize, lambda: Option<f64>) -> FitSettings {
+    FitSettings { degree, lambda }
+}
+
+impl<'a> Run<'a> {
+    /// A run on the built-in objects under the paper's degree and the given convention.
+    pub fn builtin(
+        scale: Scale,
+        seed: u64,
+        convention: Convention,
+        progress: &'a (dyn Fn(&str) + Sync),
+    ) -> Self {
+        Self {
+            objects: ObjectSource::Builtin,
+            scale,
+            seed,
+            convention,
+            fit: fit_settings(paper::DEGREE, None),
+            progress,
+        }
+    }
+
+    /// Tells what is being done.
+    pub fn say(&self, what: &str) {
+        (self.progress)(what);
+    }
+}
+
+/// What random numbers are for; no two purposes share any.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Hand poses around an object.
+    Poses = 1,
+    /// Points of a sphere.
+    Spheres = 2,
+    /// Which points of a cloud are held out.
+    Halves = 3,
+    /// Noise on coefficients, and contacts.
+    Noise = 4,
+}
+
+/// The generator of one purpose for the object (or sphere) of a number.
+///
+/// Streams of the catalogue's scans are below 2³², those of purposes above.
+pub fn generator(seed: u64, purpose: Purpose, number: usize) -> ChaCha8Rng {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(((purpose as u64) << 32) | number as u64);
+    rng
+}

@@ -1,0 +1,220 @@
+//! The signed margin of a grasp and the facets that decide it.
+
+use super::epsilon::QualityError;
+use super::workspace::{Workspace, requested_gap};
+use crate::finger::Setup;
+use crate::hull::min_norm::{Corral, Effort, Nearest};
+use crate::hull::plane::{V6, norm, scale};
+use crate::hull::search::Ball;
+use crate::hull::support::PointList;
+use crate::wrench::Wrench;
+use nalgebra::{Matrix6, Vector6};
+
+/// A wrench on a facet of the hull, and its share in the facet's point nearest to the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carrier {
+    /// The contact whose cone it belongs to.
+    pub contact: usize,
+    /// The wrench.
+    pub wrench: Wrench,
+    /// Its barycentric coordinate λ; all of a facet's sum to one.
+    pub weight: f64,
+}
+
+/// A facet of the hull: normal·w ≤ offset for every wrench w, with equality for its carriers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ActiveFacet {
+    /// The distance of its plane from the origin, negative when the origin lies beyond it.
+    pub offset: f64,
+    /// The outward unit normal: the wrench direction in which the grasp is that weak.
+    pub normal: Wrench,
+    carriers: [Carrier; 7],
+    count: usize,
+}
+
+impl ActiveFacet {
+    /// The wrenches that carry it; Σ weight·wrench = offset·normal.
+    pub fn carriers(&self) -> &[Carrier] {
+        &self.carriers[..self.count]
+    }
+
+    fn new(
+        offset: f64,
+        normal: &V6,
+        carriers: impl IntoIterator<Item = (usize, V6, f64)>,
+    ) -> ActiveFacet {
+        let mut facet = ActiveFacet {
+            offset,
+            normal: (*normal).into(),
+            carriers: [Carrier {
+                contact: 0,
+                wrench: Wrench::zeros(),
+                weight: 0.0,
+            }; 7],
+            count: 0,
+        };
+        for (slot, (contact, wrench, weight)) in facet.carriers.iter_mut().zip(carriers) {
+            *slot = Carrier {
+                contact,
+                wrench: wrench.into(),
+                weight,
+            };
+            facet.count += 1;
+        }
+        facet
+    }
+}
+
+/// How far a grasp is from losing, or from gaining, force closure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Margin {
+    /// The epsilon quality of a closed grasp; minus the distance of the origin from the hull of an
+    /// open one. The lower end of the interval.
+    pub value: f64,
+    /// No larger than the true margin.
+    pub lower: f64,
+    /// No smaller than the true margin.
+    pub upper: f64,
+    /// Whether the origin lies strictly inside.
+    pub closed: bool,
+    /// The facet (of an open grasp: the face) nearest to the origin.
+    pub facet: ActiveFacet,
+}
+
+/// The signed margin: epsilon inside, minus the distance outside, with the nearest facet.
+///
+/// An optimiser can start from an open grasp and cross into closure: the margin is continuous and
+/// its gradient follows from the facet on both sides (`facet_gradient`).
+pub fn margin(setup: &Setup<'_>, workspace: &mut Workspace) -> Result<Margin, QualityError> {
+    workspace.load(setup)?;
+    match workspace.ball(requested_gap(setup.convention.edges)) {
+        Ball::Open { direction } => Ok(outside(workspace, &direction)),
+        Ball::Closed {
+            lower,
+            upper,
+            facet,
+            ..
+        } => Ok(Margin {
+            value: lower,
+            lower,
+            upper,
+            closed: true,
+            facet: closest(workspace, facet),
+        }),
+    }
+}
+
+/// The facets within `band` of the nearest one, that one first; nothing for an open grasp.
+///
+/// Q is the least of all facet offsets, so these are what a step of that size can bring into play.
+/// Facets of more than six wrenches appear as several simplices.
+pub fn near_active_facets(
+    setup: &Setup<'_>,
+    band: f64,
+    workspace: &mut Workspace,
+    out: &mut Vec<ActiveFacet>,
+) -> Result<(), QualityError> {
+    out.clear();
+    let Margin { closed, facet, .. } = margin(setup, workspace)?;
+    if !closed {
+        return Ok(());
+    }
+    out.push(facet);
+    let gap = requested_gap(setup.convention.edges);
+    let level = facet.offset + band;
+    let nearest = workspace.finish(level, gap);
+    for at in workspace.search.polytope.alive() {
+        if at != nearest && workspace.search.polytope.keys[at] <= level {
+            out.extend(simplex_facet(workspace, at));
+        }
+    }
+    Ok(())
+}
+
+/// The nearest face of a hull that does not hold the origin inside.
+fn outside(workspace: &mut Workspace, direction: &V6) -> Margin {
+    let tolerance = 1e-12 * workspace.reach();
+    let (point, floor) = match workspace.nearest() {
+        Nearest::Outside { point, floor } => (point, floor.max(0.0)),
+        Nearest::Inside => ([0.0; 6], 0.0),
+    };
+    let distance = norm(&point);
+    let normal = if distance > tolerance {
+        scale(&point, -1.0 / distance)
+    } else {
+        *direction
+    };
+    let corral = &workspace.search.corral;
+    let carriers = corral_carriers(corral, |tag| workspace.owner(tag));
+    Margin {
+        value: -distance,
+        lower: -distance,
+        upper: -floor.min(distance),
+        closed: false,
+        facet: ActiveFacet::new(-distance, &normal, carriers),
+    }
+}
+
+fn corral_carriers<'a>(
+    corral: &'a Corral,
+    owner: impl Fn(u32) -> usize + 'a,
+) -> impl Iterator<Item = (usize, V6, f64)> + 'a {
+    (0..corral.len).map(move |i| (owner(corral.tags[i]), corral.points[i], corral.weights[i]))
+}
+
+/// The nearest facet with convex weights, also where it has more than six vertices.
+fn closest(workspace: &mut Workspace, facet: usize) -> ActiveFacet {
+    if let Some(found) = simplex_facet(workspace, facet)
+        && found.carriers().iter().all(|c| c.weight >= -1e-9)
+    {
+        return found;
+    }
+    // The foot lies in another simplex of the same plane: look over all its vertices.
+    let plane = workspace.search.polytope.facets[facet].plane;
+    let band = 1e-9 * workspace.reach();
+    workspace.flat.clear();
+    workspace.flat_tags.clear();
+    let polytope = &workspace.search.polytope;
+    for (vertex, &tag) in polytope.vertices.iter().zip(&polytope.tags) {
+        if plane.height(vertex) >= -band {
+            workspace.flat.push(*vertex);
+            workspace.flat_tags.push(tag);
+        }
+    }
+    let mut corral = Corral::default();
+    let start = workspace.flat.first().copied().unwrap_or(plane.normal);
+    corral.nearest(
+        &mut PointList(&workspace.flat),
+        &start,
+        Effort::Converge,
+        1e-14 * workspace.reach(),
+    );
+    let carriers = corral_carriers(&corral, |at| {
+        workspace.owner(workspace.flat_tags[at as usize])
+    });
+    ActiveFacet::new(plane.offset, &plane.normal, carriers)
+}
+
+/// A facet with the barycentric coordinates of its plane's foot point; None if it is too thin to
+/// have any.
+fn simplex_facet(workspace: &Workspace, at: usize) -> Option<ActiveFacet> {
+    let polytope = &workspace.search.polytope;
+    let facet = &polytope.facets[at];
+    let corners = polytope.corners(at);
+    let matrix = Matrix6::from_fn(|i, j| corners[j][i]);
+    let foot = Vector6::from(facet.plane.normal) * facet.plane.offset;
+    let weights = matrix.lu().solve(&foot)?;
+    // Too thin a simplex shows in weights that do not add up (or are not numbers at all).
+    if (weights.sum() - 1.0).abs().total_cmp(&1e-6).is_gt() {
+        return None;
+    }
+    let owners = facet
+        .vertices
+        .map(|v| workspace.owner(polytope.tags[v as usize]));
+    let carriers = (0..6).map(|i| (owners[i], corners[i], weights[i]));
+    Some(ActiveFacet::new(
+        facet.plane.offset,
+        &facet.plane.normal,
+        carriers,
+    ))
+}

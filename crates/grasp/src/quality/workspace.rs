@@ -1,0 +1,165 @@
+//! Caller-owned scratch: a grasp laid out as cones and points, and the search over them.
+
+use crate::convention::Edges;
+use crate::finger::{Cone, RoundSource, Setup, toward};
+use crate::friction::angle;
+use crate::hull::min_norm::{Effort, Nearest};
+use crate::hull::plane::V6;
+use crate::hull::search::{Ball, RELATIVE_TOLERANCE, Search};
+use crate::hull::support::PointSet;
+use crate::wrench::{Wrench, WrenchError};
+
+/// Scratch of quality computations: make one for each thread and pass it to every call.
+///
+/// It grows to the largest grasp seen and then no call allocates.
+#[derive(Clone, Debug, Default)]
+pub struct Workspace {
+    pub(crate) cones: Vec<Cone>,
+    pub(crate) points: PointSet,
+    /// The contact of each point.
+    pub(crate) owners: Vec<u32>,
+    pub(crate) search: Search,
+    order: Vec<u32>,
+    circle: Vec<(f64, f64)>,
+    pub(crate) round: bool,
+    /// The vertices of one plane, and their tags.
+    pub(crate) flat: Vec<V6>,
+    pub(crate) flat_tags: Vec<u32>,
+}
+
+impl Workspace {
+    /// Empty scratch.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Lays out a grasp. Contacts are taken in the order of their coordinates, so that results are
+    /// the same to the last bit in whatever order they come.
+    pub(crate) fn load(&mut self, setup: &Setup<'_>) -> Result<(), WrenchError> {
+        let length = setup.validate()?;
+        self.order.clear();
+        self.order.extend(0..setup.contacts.len() as u32);
+        let key = |&i: &u32| {
+            let c = &setup.contacts[i as usize];
+            let (p, n) = (&c.position, &c.inward_normal);
+            [p.x, p.y, p.z, n.x, n.y, n.z]
+        };
+        self.order.sort_unstable_by(|a, b| {
+            let pairs = key(a).into_iter().zip(key(b));
+            pairs.fold(std::cmp::Ordering::Equal, |o, (x, y)| {
+                o.then(x.total_cmp(&y))
+            })
+        });
+        self.cones.clear();
+        for &contact in &self.order {
+            self.cones.push(Cone::new(setup, contact as usize, length));
+        }
+        self.round = match setup.convention.edges {
+            Edges::Round { .. } => true,
+            Edges::Polygon(count) => {
+                self.lay_out_points(count);
+                false
+            }
+        };
+        Ok(())
+    }
+
+    /// Lays out a plain list of wrenches, each its own owner.
+    pub(crate) fn load_wrenches(&mut self, wrenches: &[Wrench]) {
+        self.round = false;
+        self.points.clear();
+        self.owners.clear();
+        for (index, wrench) in wrenches.iter().enumerate() {
+            self.points.push(&(*wrench).into());
+            self.owners.push(index as u32);
+        }
+    }
+
+    fn lay_out_points(&mut self, count: usize) {
+        if self.circle.len() != count {
+            self.circle.clear();
+            self.circle.extend((0..count).map(|j| {
+                let (sin, cos) = angle(j, count).sin_cos();
+                (cos, sin)
+            }));
+        }
+        self.points.clear();
+        self.owners.clear();
+        for cone in &self.cones {
+            for point in cone.corners(&self.circle) {
+                self.points.push(&point);
+                self.owners.push(cone.contact);
+            }
+        }
+    }
+
+    /// The largest ball about the origin in what was laid out.
+    pub(crate) fn ball(&mut self, gap: f64) -> Ball {
+        if self.round {
+            let reach = self.reach();
+            let mut source = RoundSource(&self.cones);
+            self.search
+                .ball(&mut source, &toward(&self.cones), reach, gap)
+        } else {
+            let mut source = &self.points;
+            let (sum, reach) = (*self.points.sum(), self.points.reach());
+            self.search.ball(&mut source, &sum, reach, gap)
+        }
+    }
+
+    /// The point nearest to the origin of what was laid out.
+    pub(crate) fn nearest(&mut self) -> Nearest {
+        let tolerance = 1e-14 * self.reach();
+        let corral = &mut self.search.corral;
+        if self.round {
+            let start = toward(&self.cones);
+            corral.nearest(
+                &mut RoundSource(&self.cones),
+                &start,
+                Effort::Converge,
+                tolerance,
+            )
+        } else {
+            let start = *self.points.sum();
+            corral.nearest(&mut &self.points, &start, Effort::Converge, tolerance)
+        }
+    }
+
+    /// Goes on until every facet up to `level` is final; returns the nearest.
+    pub(crate) fn finish(&mut self, level: f64, gap: f64) -> usize {
+        let tolerance = self.reach() * RELATIVE_TOLERANCE;
+        let search = &mut self.search;
+        if self.round {
+            search.finish(&mut RoundSource(&self.cones), level, gap, tolerance);
+        } else {
+            search.finish(&mut &self.points, level, gap, tolerance);
+        }
+        search.polytope.nearest()
+    }
+
+    /// The length of the longest wrench, or a little more.
+    pub(crate) fn reach(&self) -> f64 {
+        if self.round {
+            self.cones.iter().map(Cone::reach).fold(0.0, f64::max)
+        } else {
+            self.points.reach()
+        }
+    }
+
+    /// The contact that a vertex belongs to.
+    pub(crate) fn owner(&self, tag: u32) -> usize {
+        if self.round {
+            tag as usize
+        } else {
+            self.owners[tag as usize] as usize
+        }
+    }
+}
+
+/// The width of interval that a convention asks for.
+pub(crate) fn requested_gap(edges: Edges) -> f64 {
+    match edges {
+        Edges::Polygon(_) => 0.0,
+        Edges::Round { tolerance } => tolerance,
+    }
+}

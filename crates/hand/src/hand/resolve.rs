@@ -1,0 +1,267 @@
+//! Names of a spec turned into indices of a model, everything checked on the way.
+
+use super::{Finger, HandError, Preshape};
+use crate::collision::{ConvexPiece, LinkShape};
+use crate::hand_spec::{FingerSpec, HandSpec, PreshapeSpec};
+use crate::model::{Drive, HandModel, JointKind};
+
+pub(super) fn bad_number(place: &str, value: f64, wanted: &'static str) -> HandError {
+    HandError::Number {
+        place: place.to_string(),
+        value,
+        wanted,
+    }
+}
+
+pub(super) fn standoff([least, greatest]: [f64; 2]) -> Result<(f64, f64), HandError> {
+    if !(-10.0..=10.0).contains(&least) {
+        return Err(bad_number("standoff_m", least, "within 10 m"));
+    }
+    if !(least..=10.0).contains(&greatest) {
+        return Err(bad_number("standoff_m", greatest, "at least the first"));
+    }
+    Ok((least, greatest))
+}
+
+pub(super) fn link_shapes(model: &HandModel) -> Result<Vec<LinkShape>, HandError> {
+    model
+        .links
+        .iter()
+        .map(|link| {
+            let pieces = link
+                .geometry
+                .iter()
+                .map(ConvexPiece::new)
+                .collect::<Result<Vec<_>, _>>()
+                .map_err(|source| HandError::Geometry {
+                    link: link.name.clone(),
+                    source,
+                })?;
+            Ok(LinkShape::new(pieces))
+        })
+        .collect()
+}
+
+pub(super) fn fingers(
+    model: &HandModel,
+    shapes: &[LinkShape],
+    specs: &[FingerSpec],
+) -> Result<Vec<Finger>, HandError> {
+    at_least("finger", "fingers", specs.len(), 2)?;
+    let fingers = specs
+        .iter()
+        .map(|spec| finger(model, shapes, spec))
+        .collect::<Result<Vec<_>, _>>()?;
+    for (k, second) in fingers.iter().enumerate() {
+        for first in &fingers[..k] {
+            if first.name == second.name {
+                return Err(HandError::Duplicate {
+                    what: "fingers",
+                    name: first.name.clone(),
+                });
+            }
+            let shared = first
+                .moving_links
+                .iter()
+                .find(|l| second.moving_links.contains(l));
+            if let Some(&link) = shared {
+                return Err(HandError::SharedLink {
+                    first: first.name.clone(),
+                    second: second.name.clone(),
+                    link: model.links[link].name.clone(),
+                });
+            }
+        }
+    }
+    Ok(fingers)
+}
+
+fn at_least(place: &str, what: &'static str, count: usize, least: usize) -> Result<(), HandError> {
+    if count >= least {
+        return Ok(());
+    }
+    Err(HandError::TooFew {
+        place: place.to_string(),
+        what,
+        least,
+    })
+}
+
+fn finger(model: &HandModel, shapes: &[LinkShape], spec: &FingerSpec) -> Result<Finger, HandError> {
+    let place = format!("finger '{}'", spec.name);
+    at_least(&place, "tips", spec.tips.len(), 1)?;
+    at_least(&place, "closing joints", spec.closing.len(), 1)?;
+    let tip_links = spec
+        .tips
+        .iter()
+        .map(|name| find_link(model, &place, name))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut closing = Vec::new();
+    for (name, &ratio) in &spec.closing {
+        let driven = find_driven(model, &place, name)?;
+        if !(ratio.is_finite() && ratio != 0.0) {
+            return Err(bad_number(&place, ratio, "a closing ratio other than 0"));
+        }
+        closing.push((driven, ratio));
+    }
+    let (moving_links, speed_bounds) = moving_links(model, shapes, &closing);
+    for (&link, name) in tip_links.iter().zip(&spec.tips) {
+        let (finger, link_name) = (spec.name.clone(), name.clone());
+        if shapes[link].is_empty() {
+            return Err(HandError::BareTip {
+                finger,
+                link: link_name,
+            });
+        }
+        if !moving_links.contains(&link) {
+            return Err(HandError::IdleTip {
+                finger,
+                link: link_name,
+            });
+        }
+    }
+    Ok(Finger {
+        name: spec.name.clone(),
+        tip_links,
+        closing,
+        moving_links,
+        speed_bounds,
+    })
+}
+
+fn find_link(model: &HandModel, place: &str, name: &str) -> Result<usize, HandError> {
+    model
+        .link_index(name)
+        .ok_or_else(|| HandError::UnknownLink {
+            place: place.to_string(),
+            link: name.to_string(),
+        })
+}
+
+fn find_driven(model: &HandModel, place: &str, name: &str) -> Result<usize, HandError> {
+    model
+        .driven_index(name)
+        .ok_or_else(|| HandError::UnknownJoint {
+            place: place.to_string(),
+            joint: name.to_string(),
+        })
+}
+
+/// Links that closing moves, and bounds on the speed of their points.
+///
+/// A point of link L moves at most Σ_J |rate_J| · reach(J, L), reach being the length of
+/// the chain from the axis of J to the farthest point of L (1 for a sliding joint).
+fn moving_links(
+    model: &HandModel,
+    shapes: &[LinkShape],
+    closing: &[(usize, f64)],
+) -> (Vec<usize>, Vec<f64>) {
+    let rate_of = |joint: usize| match model.joints[joint].drive {
+        Drive::Fixed => 0.0,
+        Drive::Driven(index) => rate(closing, index),
+        Drive::Mimic {
+            driven, multiplier, ..
+        } => multiplier * rate(closing, driven),
+    };
+    let mut links = Vec::new();
+    let mut speeds = Vec::new();
+    for (link, shape) in shapes.iter().enumerate() {
+        let mut reach = shape.reach();
+        let mut speed = 0.0;
+        let mut moves = false;
+        for joint in model.path_to_root(link) {
+            let rate: f64 = rate_of(joint);
+            let joint = &model.joints[joint];
+            if rate != 0.0 {
+                moves = true;
+                speed += rate.abs()
+                    * if joint.kind == JointKind::Prismatic {
+                        1.0
+                    } else {
+                        reach
+                    };
+            }
+            if joint.kind == JointKind::Prismatic {
+                reach += joint.limits.0.abs().max(joint.limits.1.abs());
+            }
+            reach += joint.parent_from_joint.translation.vector.norm();
+        }
+        if moves {
+            links.push(link);
+            speeds.push(speed);
+        }
+    }
+    (links, speeds)
+}
+
+fn rate(closing: &[(usize, f64)], driven: usize) -> f64 {
+    closing
+        .iter()
+        .find(|(index, _)| *index == driven)
+        .map_or(0.0, |(_, ratio)| *ratio)
+}
+
+pub(super) fn preshapes(
+    model: &HandModel,
+    specs: &[PreshapeSpec],
+) -> Result<Vec<Preshape>, HandError> {
+    at_least("preshape", "pre-shapes", specs.len(), 1)?;
+    let mut done: Vec<Preshape> = Vec::new();
+    for spec in specs {
+        if done.iter().any(|p| p.name == spec.name) {
+            return Err(HandError::Duplicate {
+                what: "pre-shapes",
+                name: spec.name.clone(),
+            });
+        }
+        let place = format!("pre-shape '{}'", spec.name);
+        let mut joints = vec![0.0; model.driven_count()];
+        model.clamp_to_limits(&mut joints);
+        for (name, &value) in &spec.joints {
+            let index = find_driven(model, &place, name)?;
+            let (lower, upper) = model.joints[model.driven[index]].limits;
+            if !(lower..=upper).contains(&value) {
+                return Err(HandError::OutsideLimits {
+                    preshape: spec.name.clone(),
+                    joint: name.clone(),
+                    value,
+                    lower,
+                    upper,
+                });
+            }
+            joints[index] = value;
+        }
+        done.push(Preshape {
+            name: spec.name.clone(),
+            joints,
+        });
+    }
+    Ok(done)
+}
+
+/// All pairs of links with geometry that are neither neighbours nor exempt by name.
+pub(super) fn tested_pairs(
+    model: &HandModel,
+    shapes: &[LinkShape],
+    spec: &HandSpec,
+) -> Result<Vec<(usize, usize)>, HandError> {
+    let mut exempt = Vec::new();
+    for [a, b] in &spec.self_distance.exempt_pairs {
+        let a = find_link(model, "exempt_pairs", a)?;
+        let b = find_link(model, "exempt_pairs", b)?;
+        exempt.push((a.min(b), a.max(b)));
+    }
+    let solid: Vec<usize> = (0..shapes.len())
+        .filter(|&l| !shapes[l].is_empty())
+        .collect();
+    let mut pairs = Vec::new();
+    for (k, &a) in solid.iter().enumerate() {
+        for &b in &solid[k + 1..] {
+            let near = model.joints_between(a, b) <= spec.self_distance.exempt_within_joints;
+            if !near && !exempt.contains(&(a, b)) {
+                pairs.push((a, b));
+            }
+        }
+    }
+    Ok(pairs)
+}

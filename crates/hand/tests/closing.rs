@@ -1,0 +1,141 @@
+//! Closing stops where it should, only ever closes, and never enters the object.
+
+mod common;
+
+use common::{link_distance, links_distance, lump, object_from_links, parry_mesh, seeded};
+use hand::{
+    ClosingRules, CollisionObject, Hand, HandPose, PoseSampling, Rejection, close_hand, schunk_sdh,
+};
+use nalgebra::UnitVector3;
+use parry3d_f64::shape::TriMesh;
+use proptest::prelude::*;
+use shape::RadialShape;
+
+/// Follows the fingers, one after the other as they closed, and returns the least distance of any link.
+fn least_distance_on_the_way(hand: &Hand, pose: &HandPose, end: &[f64], mesh: &TriMesh) -> f64 {
+    let mut joints = hand.preshapes()[pose.preshape].joints.clone();
+    let mut least = f64::INFINITY;
+    for finger in hand.fingers() {
+        let start = joints.clone();
+        for step in 0..=20 {
+            let share = f64::from(step) / 20.0;
+            for &(driven, _) in &finger.closing {
+                joints[driven] = start[driven] + share * (end[driven] - start[driven]);
+            }
+            let poses = object_from_links(hand, &pose.object_from_palm, &joints);
+            for &link in &finger.moving_links {
+                least = least.min(link_distance(hand.model(), link, &poses[link], mesh));
+            }
+        }
+    }
+    least
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn closing_is_monotone_and_never_penetrates(
+        radius in 0.08f64..0.17,
+        waves in proptest::collection::vec(-0.06f64..0.06, 24),
+        seed in 0u64..1000,
+    ) {
+        let hand = schunk_sdh().unwrap();
+        let surface = lump(radius, &waves);
+        let object = CollisionObject::new(&surface).unwrap();
+        let mesh = parry_mesh(&surface, 121, 240);
+        let poses = PoseSampling::of_hand(&hand).sample(&surface, &hand, 4, &mut seeded(seed));
+        for pose in poses {
+            let start = &hand.preshapes()[pose.preshape].joints;
+            let rules = ClosingRules::default();
+            let Ok(closed) = close_hand(&object, &hand, &pose.object_from_palm, start, &rules) else {
+                continue;
+            };
+            for finger in hand.fingers() {
+                for &(driven, ratio) in &finger.closing {
+                    prop_assert!((closed.joints[driven] - start[driven]) * ratio >= 0.0);
+                }
+            }
+            prop_assert!(least_distance_on_the_way(&hand, &pose, &closed.joints, &mesh) > 0.0);
+        }
+    }
+}
+
+fn aimed_at(hand: &Hand, surface: &RadialShape, standoff: f64, preshape: usize) -> HandPose {
+    let from = UnitVector3::new_normalize(nalgebra::Vector3::new(0.1, 0.2, 1.0));
+    HandPose {
+        object_from_palm: hand::aimed(hand, &from, surface.radius(&from) + standoff, 0.3),
+        preshape,
+    }
+}
+
+fn close(
+    surface: &RadialShape,
+    hand: &Hand,
+    pose: &HandPose,
+) -> Result<hand::ClosedHand, Rejection> {
+    let object = CollisionObject::new(surface).unwrap();
+    let start = &hand.preshapes()[pose.preshape].joints;
+    let rules = ClosingRules::default();
+    close_hand(&object, hand, &pose.object_from_palm, start, &rules)
+}
+
+#[test]
+fn rules_hold_after_closing_on_a_ball() {
+    let hand = schunk_sdh().unwrap();
+    let surface = RadialShape::sphere(3, 0.035).unwrap();
+    let mesh = parry_mesh(&surface, 241, 480);
+    for preshape in 0..2 {
+        let pose = aimed_at(&hand, &surface, 0.13, preshape);
+        let closed = close(&surface, &hand, &pose).unwrap();
+        let poses = object_from_links(&hand, &pose.object_from_palm, &closed.joints);
+        let tips: Vec<usize> = hand
+            .fingers()
+            .iter()
+            .flat_map(|f| f.tip_links.clone())
+            .collect();
+        for (link, pose) in poses.iter().enumerate() {
+            let free = link_distance(hand.model(), link, pose, &mesh);
+            if tips.contains(&link) {
+                assert!(free > 0.0 && free < 1e-3, "{free}");
+            } else {
+                assert!(free >= 5e-3, "{free}");
+            }
+        }
+        for &(a, b) in hand.tested_pairs() {
+            assert!(links_distance(hand.model(), &poses, a, b) >= 5e-3);
+        }
+        assert_eq!(closed.object_from_links.len(), poses.len());
+        assert!(closed.steps > 0 && closed.steps < 100, "{}", closed.steps);
+    }
+}
+
+#[test]
+fn every_reason_for_rejection_is_met() {
+    let hand = schunk_sdh().unwrap();
+    let ball = |radius| RadialShape::sphere(3, radius).unwrap();
+    let outcome = |radius: f64, standoff: f64| {
+        let surface = ball(radius);
+        let pose = aimed_at(&hand, &surface, standoff, 0);
+        close(&surface, &hand, &pose).map(|_| ())
+    };
+    assert!(matches!(
+        outcome(0.035, 0.0),
+        Err(Rejection::BaseNearObject { .. })
+    ));
+    assert!(matches!(
+        outcome(0.2, 0.12),
+        Err(Rejection::StartsInObject { .. })
+    ));
+    assert!(matches!(
+        outcome(0.035, 0.5),
+        Err(Rejection::TipDidNotArrive { .. })
+    ));
+    assert!(matches!(
+        outcome(0.005, 0.15),
+        Err(Rejection::PartsNear { .. })
+    ));
+    assert!(matches!(
+        outcome(0.06, 0.11),
+        Err(Rejection::PartNearObject { .. })
+    ));
+}

@@ -1,0 +1,236 @@
+//! The header of binary records, and the only use of bincode.
+//!
+//! Layout, little endian: magic `MODULI\r\n` (8 bytes), kind (u16), version (u16), length of the
+//! body (u64), FNV-1a checksum of the body (u64), body.
+
+use bincode::config;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+const MAGIC: [u8; 8] = *b"MODULI\r\n";
+const HEADER: usize = 28;
+/// No body is larger: a library of a thousand shapes of degree 100 has 80 MB.
+const MAX_BODY: u64 = 1 << 28;
+
+/// What a record holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A [`crate::ShapeRecord`].
+    Shape,
+    /// A [`crate::LibraryRecord`].
+    Library,
+}
+
+impl Kind {
+    fn code(self) -> u16 {
+        match self {
+            Kind::Shape => 1,
+            Kind::Library => 2,
+        }
+    }
+
+    /// Version that is written, and the only one that is read.
+    fn version(self) -> u16 {
+        match self {
+            Kind::Shape | Kind::Library => 1,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Kind::Shape => "shape",
+            Kind::Library => "library",
+        }
+    }
+
+    fn from_code(code: u16) -> Option<Self> {
+        [Kind::Shape, Kind::Library]
+            .into_iter()
+            .find(|kind| kind.code() == code)
+    }
+}
+
+/// Why bytes are not the record that was wanted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EnvelopeError {
+    /// Not one of our files.
+    #[error("not a moduli record: it does not begin with the mark MODULI")]
+    Magic,
+    /// Another kind of record.
+    #[error("this record holds a {found}, expected a {expected}")]
+    Kind {
+        /// What it holds.
+        found: String,
+        /// What was wanted.
+        expected: &'static str,
+    },
+    /// Written by another version of the format.
+    #[error("{kind} record of format version {found}; this program reads version {known}")]
+    Version {
+        /// Kind of record.
+        kind: &'static str,
+        /// Version found.
+        found: u16,
+        /// Version read.
+        known: u16,
+    },
+    /// The file is shorter or longer than it says.
+    #[error("the record says {expected} bytes of content, but {found} follow the header")]
+    Length {
+        /// Bytes announced.
+        expected: u64,
+        /// Bytes present.
+        found: u64,
+    },
+    /// The content was changed.
+    #[error("the record is damaged: its checksum does not match its content")]
+    Checksum,
+    /// The content does not decode.
+    #[error("the record does not decode: {reason}")]
+    Body {
+        /// What the decoder found.
+        reason: String,
+    },
+}
+
+/// Wraps a value. Errors only when the body cannot be encoded or is beyond 256 MiB.
+pub fn encode<T: Serialize>(kind: Kind, value: &T) -> Result<Vec<u8>, EnvelopeError> {
+    let body = bincode::serde::encode_to_vec(value, config::standard().with_fixed_int_encoding())
+        .map_err(|e| EnvelopeError::Body {
+        reason: e.to_string(),
+    })?;
+    if body.len() as u64 > MAX_BODY {
+        return Err(EnvelopeError::Body {
+            reason: format!("{} bytes; at most {MAX_BODY} are allowed", body.len()),
+        });
+    }
+    let mut out = Vec::with_capacity(HEADER + body.len());
+    out.extend_from_slice(&MAGIC);
+    out.extend_from_slice(&kind.code().to_le_bytes());
+    out.extend_from_slice(&kind.version().to_le_bytes());
+    out.extend_from_slice(&(body.len() as u64).to_le_bytes());
+    out.extend_from_slice(&checksum(&body).to_le_bytes());
+    out.extend_from_slice(&body);
+    Ok(out)
+}
+
+/// Which kind of record bytes begin as, if any.
+pub fn kind_of(bytes: &[u8]) -> Option<Kind> {
+    if bytes.len() < HEADER || bytes[..8] != MAGIC {
+        return None;
+    }
+    Kind::from_code(u16::from_le_bytes([bytes[8], bytes[9]]))
+}
+
+/// Unwraps a value after checking mark, kind, version, length and checksum.
+pub fn decode<T: DeserializeOwned>(kind: Kind, bytes: &[u8]) -> Result<T, EnvelopeError> {
+    let body = checked_body(kind, bytes)?;
+    let config = config::standard()
+        .with_fixed_int_encoding()
+        .with_limit::<{ MAX_BODY as usize }>();
+    let (value, read) =
+        bincode::serde::decode_from_slice(body, config).map_err(|e| EnvelopeError::Body {
+            reason: e.to_string(),
+        })?;
+    if read == body.len() {
+        Ok(value)
+    } else {
+        Err(EnvelopeError::Body {
+            reason: format!("{} bytes are left over", body.len() - read),
+        })
+    }
+}
+
+fn checked_body(kind: Kind, bytes: &[u8]) -> Result<&[u8], EnvelopeError> {
+    if bytes.len() < HEADER || bytes[..8] != MAGIC {
+        return Err(EnvelopeError::Magic);
+    }
+    let short = |at: usize| u16::from_le_bytes([bytes[at], bytes[at + 1]]);
+    let long = |at: usize| {
+        let mut eight = [0; 8];
+        eight.copy_from_slice(&bytes[at..at + 8]);
+        u64::from_le_bytes(eight)
+    };
+    if short(8) != kind.code() {
+        let found = Kind::from_code(short(8)).map_or("record of an unknown kind", Kind::name);
+        return Err(EnvelopeError::Kind {
+            found: found.to_owned(),
+            expected: kind.name(),
+        });
+    }
+    if short(10) != kind.version() {
+        return Err(EnvelopeError::Version {
+            kind: kind.name(),
+            found: short(10),
+            known: kind.version(),
+        });
+    }
+    let body = &bytes[HEADER..];
+    if long(12) != body.len() as u64 {
+        return Err(EnvelopeError::Length {
+            expected: long(12),
+            found: body.len() as u64,
+        });
+    }
+    if long(20) != checksum(body) {
+        return Err(EnvelopeError::Checksum);
+    }
+    Ok(body)
+}
+
+/// 64-bit FNV-1a: catches accidents, not attackers.
+fn checksum(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wrapped() -> Vec<u8> {
+        encode(Kind::Shape, &vec![1.5_f64, -2.0]).unwrap()
+    }
+
+    #[test]
+    fn comes_back() {
+        assert_eq!(
+            decode::<Vec<f64>>(Kind::Shape, &wrapped()),
+            Ok(vec![1.5, -2.0])
+        );
+        assert_eq!(kind_of(&wrapped()), Some(Kind::Shape));
+        assert_eq!(kind_of(b"ply\nformat ascii 1.0\n and so on"), None);
+    }
+
+    #[test]
+    fn every_damage_is_named() {
+        let good = wrapped();
+        let read = |bytes: &[u8]| decode::<Vec<f64>>(Kind::Shape, bytes);
+        assert_eq!(read(b"ply"), Err(EnvelopeError::Magic));
+        assert!(matches!(
+            decode::<Vec<f64>>(Kind::Library, &good),
+            Err(EnvelopeError::Kind {
+                expected: "library",
+                ..
+            })
+        ));
+        let mut newer = good.clone();
+        newer[10] = 9;
+        assert!(matches!(
+            read(&newer),
+            Err(EnvelopeError::Version { found: 9, .. })
+        ));
+        assert!(matches!(
+            read(&good[..good.len() - 1]),
+            Err(EnvelopeError::Length { .. })
+        ));
+        let mut flipped = good.clone();
+        *flipped.last_mut().unwrap() ^= 1;
+        assert_eq!(read(&flipped), Err(EnvelopeError::Checksum));
+        assert!(matches!(
+            decode::<Vec<Vec<u64>>>(Kind::Shape, &good),
+            Err(EnvelopeError::Body { .. })
+        ));
+    }
+}

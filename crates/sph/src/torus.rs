@@ -1,0 +1,530 @@
+//! Functions on the sphere as fine grids on the doubled torus, ready for local interpolation.
+//!
+//! With θ running once around the circle, (θ, φ) and (2π−θ, φ+π) are one point, and a function of
+//! degree D is a trigonometric polynomial of degree D in both angles. Its modes, divided by the
+//! window's transform and summed on a grid σ times finer than they need, make a grid whose sum with
+//! the window at any point is the function there, to the window's accuracy. The adjoint takes
+//! spread points to moments.
+
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+use crate::fft::{Complex, Fft, LANES, Sign, smooth_length};
+use crate::kernel::{Kernel, TAPS};
+use crate::legendre::Legendre;
+use crate::rings::{Lane, OrderValues, Pairs, add_order, multiply, order_sums};
+
+/// Fine grid values: rows of equal θ from a little before the north pole to a little beyond the
+/// south pole, columns of equal φ with the first and last few repeated.
+#[derive(Clone, Debug)]
+pub(crate) struct TorusGrid {
+    pub(crate) values: Vec<f64>,
+}
+
+/// Constants for one degree and window.
+#[derive(Clone, Debug)]
+pub(crate) struct Torus {
+    degree: usize,
+    legendre: Legendre,
+    kernel: Kernel,
+    /// Around the θ circle through the rings where harmonics are summed.
+    coarse: Fft,
+    theta: Fft,
+    phi: Fft,
+    /// 1 / transform of the window at mode k, for θ (with the coarse circle's 1/n) and for φ.
+    corrections: [Vec<f64>; 2],
+    blocks: Vec<Pairs>,
+}
+
+/// Numbers (re, im) with rows of `stride`: modes m = 0 … D of every ring or row.
+struct Modes {
+    stride: usize,
+    re: Vec<f64>,
+    im: Vec<f64>,
+}
+
+impl Modes {
+    fn zeros(rows: usize, stride: usize) -> Self {
+        Self {
+            stride,
+            re: vec![0.0; rows * stride],
+            im: vec![0.0; rows * stride],
+        }
+    }
+}
+
+impl Torus {
+    pub(crate) fn new(degree: usize, width: usize, oversampling: f64) -> Self {
+        let kernel = Kernel::new(width, oversampling);
+        let needed = (2 * degree + 1) as f64 * oversampling;
+        // A window must not meet itself around the circle.
+        let fine = smooth_length((needed.ceil() as usize).max(2 * TAPS));
+        let coarse = smooth_length(2 * degree + 2);
+        let correction = |share: f64| -> Vec<f64> {
+            (0..=degree)
+                .map(|k| share / kernel.transform(k as f64 / fine as f64))
+                .collect()
+        };
+        let corrections = [correction(1.0 / coarse as f64), correction(1.0)];
+        let step = std::f64::consts::TAU / coarse as f64;
+        let pairs = coarse / 4 + 1;
+        let blocks = (0..pairs.div_ceil(LANES))
+            .map(|b| Pairs {
+                z: std::array::from_fn(|k| (step * (b * LANES + k) as f64).cos()),
+                sin: std::array::from_fn(|k| (step * (b * LANES + k) as f64).sin()),
+            })
+            .collect();
+        Self {
+            degree,
+            legendre: Legendre::new(degree),
+            kernel,
+            coarse: Fft::new(coarse),
+            theta: Fft::new(fine),
+            phi: Fft::new(fine),
+            corrections,
+            blocks,
+        }
+    }
+
+    pub(crate) fn degree(&self) -> usize {
+        self.degree
+    }
+
+    pub(crate) fn kernel(&self) -> &Kernel {
+        &self.kernel
+    }
+
+    /// Grid steps around the circle, in θ and in φ.
+    pub(crate) fn steps(&self) -> usize {
+        self.theta.length()
+    }
+
+    /// Rows kept: θ from −reach to half the circle + width/2.
+    pub(crate) fn rows(&self) -> usize {
+        self.steps() / 2 + self.kernel.width()
+    }
+
+    /// Words from one row to the next.
+    pub(crate) fn stride(&self) -> usize {
+        self.steps() + TAPS
+    }
+
+    /// The grid whose window sums are Σ β Y.
+    pub(crate) fn synthesis(&self, beta: &[f64]) -> TorusGrid {
+        let rings = self.ring_modes(beta);
+        let rows = self.row_modes(&rings);
+        let mut values = vec![0.0; self.rows() * self.stride()];
+        values
+            .par_chunks_mut(2 * LANES * self.stride())
+            .enumerate()
+            .for_each(|(block, values)| {
+                Arch::new().dispatch(RowsFromModes {
+                    torus: self,
+                    modes: &rows,
+                    first: block * 2 * LANES,
+                    values,
+                });
+            });
+        TorusGrid { values }
+    }
+
+    /// The adjoint of [`Torus::synthesis`]: Σ grid value · (response of the grid to Y_{lm}).
+    pub(crate) fn analysis(&self, mut grid: TorusGrid) -> Vec<f64> {
+        let mut rows = Modes::zeros(self.rows(), self.mode_stride());
+        let stride = rows.stride;
+        grid.values
+            .par_chunks_mut(2 * LANES * self.stride())
+            .zip(rows.re.par_chunks_mut(2 * LANES * stride))
+            .zip(rows.im.par_chunks_mut(2 * LANES * stride))
+            .for_each(|((values, re), im)| {
+                Arch::new().dispatch(ModesFromRows {
+                    torus: self,
+                    values,
+                    re,
+                    im,
+                });
+            });
+        let rings = self.rings_from_rows(&rows);
+        self.sum_rings(&rings)
+    }
+
+    fn mode_stride(&self) -> usize {
+        (self.degree + 1).next_multiple_of(LANES)
+    }
+
+    fn ring_count(&self) -> usize {
+        self.coarse.length() / 2 + 1
+    }
+
+    /// c_m − i s_m on the coarse rings, ring after ring; halved for m > 0.
+    fn ring_modes(&self, beta: &[f64]) -> Modes {
+        let blocks: Vec<Vec<OrderValues>> = self
+            .blocks
+            .par_iter()
+            .map(|pairs| {
+                Arch::new().dispatch(SumDegrees {
+                    legendre: &self.legendre,
+                    pairs,
+                    beta,
+                })
+            })
+            .collect();
+        let last = self.ring_count() - 1;
+        let mut modes = Modes::zeros(self.ring_count(), self.mode_stride());
+        for (j, north, south) in self.pair_list(last) {
+            for (m, sums) in blocks[j / LANES].iter().enumerate() {
+                let share = if m == 0 { 1.0 } else { 0.5 };
+                for (side, ring) in [(0, north), (1, south)] {
+                    let at = ring * modes.stride + m;
+                    modes.re[at] = share * sums.cos[side][j % LANES];
+                    modes.im[at] = if m == 0 { 0.0 } else { -share * sums.sin[side][j % LANES] };
+                }
+            }
+        }
+        modes
+    }
+
+    /// (pair, northern ring, southern ring).
+    fn pair_list(&self, last: usize) -> impl Iterator<Item = (usize, usize, usize)> {
+        (0..=last / 2).map(move |j| (j, j, last - j))
+    }
+
+    /// Adds up rings · P̄_l^m; the adjoint of [`Torus::ring_modes`] without its halving.
+    fn sum_rings(&self, rings: &Modes) -> Vec<f64> {
+        let count = crate::index::count(self.degree);
+        let last = self.ring_count() - 1;
+        let parts: Vec<Vec<f64>> = (0..self.blocks.len())
+            .into_par_iter()
+            .map(|block| {
+                let mut beta = vec![0.0; count];
+                let mut values = vec![ZERO_ORDER; self.degree + 1];
+                for (j, north, south) in self.pair_list(last) {
+                    if j / LANES != block {
+                        continue;
+                    }
+                    for (m, value) in values.iter_mut().enumerate() {
+                        for (side, ring) in [(0, north), (1, south)] {
+                            // The equator is its own mirror image: counted once.
+                            if side == 0 || north != south {
+                                let at = ring * rings.stride + m;
+                                value.cos[side][j % LANES] = rings.re[at];
+                                value.sin[side][j % LANES] = -rings.im[at];
+                            }
+                        }
+                    }
+                }
+                Arch::new().dispatch(AddDegrees {
+                    legendre: &self.legendre,
+                    pairs: &self.blocks[block],
+                    values: &values,
+                    beta: &mut beta,
+                });
+                beta
+            })
+            .collect();
+        let mut sum = vec![0.0; count];
+        for part in &parts {
+            for (s, p) in sum.iter_mut().zip(part) {
+                *s += p;
+            }
+        }
+        sum
+    }
+
+    /// From coarse rings to fine rows, order by order.
+    fn row_modes(&self, rings: &Modes) -> Modes {
+        let columns: Vec<Vec<Complex>> = (0..rings.stride / LANES)
+            .into_par_iter()
+            .map(|block| {
+                Arch::new().dispatch(RowsFromRings {
+                    torus: self,
+                    rings,
+                    first: block * LANES,
+                })
+            })
+            .collect();
+        let mut rows = Modes::zeros(self.rows(), rings.stride);
+        for (block, column) in columns.iter().enumerate() {
+            for (r, value) in column.iter().enumerate() {
+                let at = r * rows.stride + block * LANES;
+                rows.re[at..at + LANES].copy_from_slice(&value.re);
+                rows.im[at..at + LANES].copy_from_slice(&value.im);
+            }
+        }
+        rows
+    }
+
+    /// The adjoint of [`Torus::row_modes`].
+    fn rings_from_rows(&self, rows: &Modes) -> Modes {
+        let columns: Vec<Vec<Complex>> = (0..rows.stride / LANES)
+            .into_par_iter()
+            .map(|block| {
+                Arch::new().dispatch(RingsFromRows {
+                    torus: self,
+                    rows,
+                    first: block * LANES,
+                })
+            })
+            .collect();
+        let mut rings = Modes::zeros(self.ring_count(), rows.stride);
+        for (block, column) in columns.iter().enumerate() {
+            for (j, value) in column.iter().enumerate() {
+                let at = j * rings.stride + block * LANES;
+                rings.re[at..at + LANES].copy_from_slice(&value.re);
+                rings.im[at..at + LANES].copy_from_slice(&value.im);
+            }
+        }
+        rings
+    }
+
+    /// Place on the θ circle of a stored row.
+    #[inline(always)]
+    fn circle_position(&self, row: usize) -> usize {
+        let n = self.steps();
+        (row + n - self.kernel.reach()) % n
+    }
+
+    /// Correction of θ mode k and order m.
+    #[inline(always)]
+    fn correct(&self, value: &Complex, k: usize, first: usize) -> Complex {
+        let mut out = *value;
+        for lane in 0..LANES {
+            let m = (first + lane).min(self.degree);
+            let factor = self.corrections[0][k] * self.corrections[1][m];
+            out.re[lane] *= factor;
+            out.im[lane] *= factor;
+        }
+        out
+    }
+}
+
+const ZERO_ORDER: OrderValues = OrderValues {
+    cos: [[0.0; LANES]; 2],
+    sin: [[0.0; LANES]; 2],
+};
+
+/// Eight orders at a place.
+#[inline(always)]
+fn load(modes: &Modes, row: usize, first: usize) -> Complex {
+    let at = row * modes.stride + first;
+    let mut out = Complex::ZERO;
+    out.re.copy_from_slice(&modes.re[at..at + LANES]);
+    out.im.copy_from_slice(&modes.im[at..at + LANES]);
+    out
+}
+
+/// Signs (−1)^m of eight orders.
+fn parities(first: usize) -> Lane {
+    std::array::from_fn(|lane| if (first + lane).is_multiple_of(2) { 1.0 } else { -1.0 })
+}
+
+struct SumDegrees<'a> {
+    legendre: &'a Legendre,
+    pairs: &'a Pairs,
+    beta: &'a [f64],
+}
+
+impl WithSimd for SumDegrees<'_> {
+    type Output = Vec<OrderValues>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) -> Self::Output {
+        let mut power = [1.0; LANES];
+        let mut out = Vec::with_capacity(self.legendre.degree() + 1);
+        for m in 0..=self.legendre.degree() {
+            out.push(order_sums(self.legendre, m, &self.pairs.z, &power, self.beta));
+            multiply(&mut power, &self.pairs.sin);
+        }
+        out
+    }
+}
+
+struct AddDegrees<'a> {
+    legendre: &'a Legendre,
+    pairs: &'a Pairs,
+    values: &'a [OrderValues],
+    beta: &'a mut [f64],
+}
+
+impl WithSimd for AddDegrees<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let mut power = [1.0; LANES];
+        for (m, values) in self.values.iter().enumerate() {
+            add_order(self.legendre, m, &self.pairs.z, &power, values, self.beta);
+            multiply(&mut power, &self.pairs.sin);
+        }
+    }
+}
+
+/// Eight orders from coarse rings to fine rows.
+struct RowsFromRings<'a> {
+    torus: &'a Torus,
+    rings: &'a Modes,
+    first: usize,
+}
+
+impl WithSimd for RowsFromRings<'_> {
+    type Output = Vec<Complex>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) -> Vec<Complex> {
+        let (torus, first) = (self.torus, self.first);
+        let (coarse, fine) = (torus.coarse.length(), torus.theta.length());
+        let mut circle = vec![Complex::ZERO; coarse];
+        let parity = parities(first);
+        for (j, slot) in circle.iter_mut().enumerate() {
+            *slot = load(self.rings, j.min(coarse - j), first);
+            if 2 * j > coarse {
+                multiply(&mut slot.re, &parity);
+                multiply(&mut slot.im, &parity);
+            }
+        }
+        let mut scratch = vec![Complex::ZERO; fine];
+        torus.coarse.run(Sign::Minus, &mut circle, &mut scratch);
+        let mut data = vec![Complex::ZERO; fine];
+        data[0] = torus.correct(&circle[0], 0, first);
+        for k in 1..=torus.degree {
+            data[k] = torus.correct(&circle[k], k, first);
+            data[fine - k] = torus.correct(&circle[coarse - k], k, first);
+        }
+        torus.theta.run(Sign::Plus, &mut data, &mut scratch);
+        (0..torus.rows())
+            .map(|r| data[torus.circle_position(r)])
+            .collect()
+    }
+}
+
+/// The adjoint of [`RowsFromRings`].
+struct RingsFromRows<'a> {
+    torus: &'a Torus,
+    rows: &'a Modes,
+    first: usize,
+}
+
+impl WithSimd for RingsFromRows<'_> {
+    type Output = Vec<Complex>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) -> Vec<Complex> {
+        let (torus, first) = (self.torus, self.first);
+        let (coarse, fine) = (torus.coarse.length(), torus.theta.length());
+        let mut data = vec![Complex::ZERO; fine];
+        for r in 0..torus.rows() {
+            data[torus.circle_position(r)] = load(self.rows, r, first);
+        }
+        let mut scratch = vec![Complex::ZERO; fine];
+        torus.theta.run(Sign::Minus, &mut data, &mut scratch);
+        let mut circle = vec![Complex::ZERO; coarse];
+        circle[0] = torus.correct(&data[0], 0, first);
+        for k in 1..=torus.degree {
+            circle[k] = torus.correct(&data[k], k, first);
+            circle[coarse - k] = torus.correct(&data[fine - k], k, first);
+        }
+        torus.coarse.run(Sign::Plus, &mut circle, &mut scratch);
+        let parity = parities(first);
+        for j in 1..coarse / 2 {
+            let mut mirror = circle[coarse - j];
+            multiply(&mut mirror.re, &parity);
+            multiply(&mut mirror.im, &parity);
+            for lane in 0..LANES {
+                circle[j].re[lane] += mirror.re[lane];
+                circle[j].im[lane] += mirror.im[lane];
+            }
+        }
+        circle.truncate(coarse / 2 + 1);
+        circle
+    }
+}
+
+/// Sixteen rows of fine values from their modes.
+struct RowsFromModes<'a> {
+    torus: &'a Torus,
+    modes: &'a Modes,
+    first: usize,
+    values: &'a mut [f64],
+}
+
+impl WithSimd for RowsFromModes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let torus = self.torus;
+        let (n, stride, reach) = (torus.steps(), torus.stride(), torus.kernel.reach());
+        let rows = self.values.len() / stride;
+        let mut data = vec![Complex::ZERO; n];
+        let mut scratch = vec![Complex::ZERO; n];
+        let at = |row: usize, m: usize| {
+            let at = (self.first + row) * self.modes.stride + m;
+            (self.modes.re[at], self.modes.im[at])
+        };
+        for m in 0..=torus.degree {
+            for lane in 0..LANES.min(rows) {
+                let (ar, ai) = at(lane, m);
+                let (br, bi) = if lane + LANES < rows { at(lane + LANES, m) } else { (0.0, 0.0) };
+                data[m].re[lane] = ar - bi;
+                data[m].im[lane] = ai + br;
+                if m > 0 {
+                    data[n - m].re[lane] = ar + bi;
+                    data[n - m].im[lane] = br - ai;
+                }
+            }
+        }
+        torus.phi.run(Sign::Plus, &mut data, &mut scratch);
+        for (r, row) in self.values.chunks_mut(stride).enumerate() {
+            for (k, value) in row.iter_mut().enumerate() {
+                let element = &data[(k + n - reach) % n];
+                *value = if r < LANES { element.re[r] } else { element.im[r - LANES] };
+            }
+        }
+    }
+}
+
+/// The adjoint of [`RowsFromModes`], with modes Σ value e^{−imφ}.
+struct ModesFromRows<'a> {
+    torus: &'a Torus,
+    values: &'a [f64],
+    re: &'a mut [f64],
+    im: &'a mut [f64],
+}
+
+impl WithSimd for ModesFromRows<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let torus = self.torus;
+        let (n, stride, reach) = (torus.steps(), torus.stride(), torus.kernel.reach());
+        let mode_stride = torus.mode_stride();
+        let mut data = vec![Complex::ZERO; n];
+        let mut scratch = vec![Complex::ZERO; n];
+        for (r, row) in self.values.chunks(stride).enumerate() {
+            for (k, value) in row.iter().enumerate() {
+                let element = &mut data[(k + n - reach) % n];
+                if r < LANES {
+                    element.re[r] += value;
+                } else {
+                    element.im[r - LANES] += value;
+                }
+            }
+        }
+        torus.phi.run(Sign::Minus, &mut data, &mut scratch);
+        let rows = self.values.len() / stride;
+        for m in 0..=torus.degree {
+            let (up, down) = (&data[m], &data[(n - m) % n]);
+            for lane in 0..LANES.min(rows) {
+                let at = lane * mode_stride + m;
+                self.re[at] = 0.5 * (up.re[lane] + down.re[lane]);
+                self.im[at] = 0.5 * (up.im[lane] - down.im[lane]);
+                if lane + LANES < rows {
+                    let at = at + LANES * mode_stride;
+                    self.re[at] = 0.5 * (up.im[lane] + down.im[lane]);
+                    self.im[at] = 0.5 * (down.re[lane] - up.re[lane]);
+                }
+            }
+        }
+    }
+}
