@@ -21,7 +21,7 @@ pub(crate) struct Common {
     #[arg(long, global = true)]
     pub(crate) json: bool,
     /// Threads to use; all cores by default.
-    #[arg(long, global = true, value_parser = clap::value_parser!(u16).range(1..=1024).map(usize::from))]
+    #[arg(long, global = true, value_parser = count_in::<1, 1024>)]
     pub(crate) threads: Option<usize>,
     /// Seed of everything random; the same seed gives the same bytes.
     #[arg(long, global = true, default_value_t = 0)]
@@ -49,6 +49,14 @@ pub(crate) enum Command {
     Info(InfoOptions),
 }
 
+/// A whole number between LOW and HIGH.
+fn count_in<const LOW: usize, const HIGH: usize>(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count) if (LOW..=HIGH).contains(&count) => Ok(count),
+        _ => Err(format!("expected a whole number from {LOW} to {HIGH}")),
+    }
+}
+
 /// How clouds are read and fitted.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct CloudOptions {
@@ -56,7 +64,7 @@ pub(crate) struct CloudOptions {
     #[arg(long, value_enum, default_value_t = Unit::M)]
     pub(crate) unit: Unit,
     /// Highest degree of the harmonics.
-    #[arg(long, default_value_t = 50, value_parser = clap::value_parser!(u16).range(0..=150).map(usize::from))]
+    #[arg(long, default_value_t = 50, value_parser = count_in::<0, 150>)]
     pub(crate) degree: usize,
     /// Weight of the penalty; chosen from the data by default.
     #[arg(long)]
@@ -118,10 +126,10 @@ pub(crate) struct MeshOptions {
     #[arg(short, long)]
     pub(crate) output: PathBuf,
     /// Circles of latitude.
-    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u16).range(3..=4000).map(usize::from))]
+    #[arg(long, default_value_t = 100, value_parser = count_in::<3, 4000>)]
     pub(crate) rows: usize,
     /// Points on each.
-    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u16).range(3..=4000).map(usize::from))]
+    #[arg(long, default_value_t = 100, value_parser = count_in::<3, 4000>)]
     pub(crate) columns: usize,
 }
 
@@ -174,16 +182,16 @@ pub(crate) struct GraspOptions {
     #[command(flatten)]
     pub(crate) convention: ConventionOptions,
     /// Library objects to transfer from, the nearest first.
-    #[arg(long, default_value_t = 3)]
+    #[arg(long, default_value_t = 3, value_parser = count_in::<0, 1000>)]
     pub(crate) neighbours: usize,
     /// Grasps to transfer from each of them.
-    #[arg(long, default_value_t = 4)]
+    #[arg(long, default_value_t = 4, value_parser = count_in::<0, 1000>)]
     pub(crate) transfers: usize,
     /// Hand poses to try afresh.
-    #[arg(long, default_value_t = 700)]
+    #[arg(long, default_value_t = 700, value_parser = count_in::<0, 1_000_000>)]
     pub(crate) poses: usize,
     /// Grasps to keep of each kind.
-    #[arg(long, default_value_t = 12)]
+    #[arg(long, default_value_t = 12, value_parser = count_in::<1, 10_000>)]
     pub(crate) keep: usize,
 }
 

@@ -34,7 +34,10 @@ pub(crate) fn read(path: &Path, columns: usize) -> Result<Table, Failure> {
     let order = file.order();
     // The header's count is checked against the bytes at hand before anything is allocated.
     if shape[0].saturating_mul(shape[1]) > bytes.len() as u64 {
-        return Err(Failure::input(path, "the file is shorter than its header says"));
+        return Err(Failure::input(
+            path,
+            "the file is shorter than its header says",
+        ));
     }
     let values = match file.try_data::<f64>() {
         Ok(data) => data.collect::<Result<Vec<f64>, _>>().map_err(parse)?,
@@ -44,7 +47,10 @@ pub(crate) fn read(path: &Path, columns: usize) -> Result<Table, Failure> {
                 .collect::<Result<Vec<f64>, _>>()
                 .map_err(parse)?,
             Err(_) => {
-                return Err(Failure::input(path, "expected 32- or 64-bit floating point numbers"));
+                return Err(Failure::input(
+                    path,
+                    "expected 32- or 64-bit floating point numbers",
+                ));
             }
         },
     };

@@ -1,5 +1,6 @@
 //! The main job: candidates by transfer and by synthesis, ranked.
 
+pub(crate) mod hand_mesh;
 pub(crate) mod library;
 pub(crate) mod page;
 pub(crate) mod ranking;

@@ -28,6 +28,12 @@ pub struct Args {
     /// How grasp quality is measured: paper, graspit, dexnet, frogger, openrave or unit
     #[arg(long, default_value = "paper", value_parser = Convention::named)]
     pub convention: Convention,
+    /// Highest degree L of the surfaces
+    #[arg(long, default_value_t = crate::paper::DEGREE, value_parser = parse_degree)]
+    pub degree: usize,
+    /// Penalty λ of the fits; chosen from the data when absent
+    #[arg(long)]
+    pub lambda: Option<f64>,
     /// Threads to use; all processors when absent
     #[arg(long)]
     pub threads: Option<usize>,
@@ -55,6 +61,13 @@ fn object_source(text: &str) -> Result<ObjectSource, std::convert::Infallible> {
     })
 }
 
+fn parse_degree(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(degree @ 1..=200) => Ok(degree),
+        _ => Err("expected a whole number from 1 to 200".to_owned()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -71,14 +84,26 @@ mod tests {
         assert_eq!((args.scale, args.seed), (Scale::Small, 1));
         assert_eq!(args.out, PathBuf::from("out"));
         assert_eq!(args.convention.name, "paper");
+        assert_eq!((args.degree, args.lambda), (crate::paper::DEGREE, None));
         assert_eq!((args.threads, args.quiet), (None, false));
     }
 
     #[test]
     fn everything_can_be_chosen() {
         let args = read(&[
-            "--objects", "scans", "--scale", "full", "--seed", "9", "--out", "there",
-            "--convention", "dexnet", "--threads", "3", "-q",
+            "--objects",
+            "scans",
+            "--scale",
+            "full",
+            "--seed",
+            "9",
+            "--out",
+            "there",
+            "--convention",
+            "dexnet",
+            "--threads",
+            "3",
+            "-q",
         ])
         .unwrap();
         assert_eq!(args.objects, ObjectSource::Folder(PathBuf::from("scans")));
@@ -89,9 +114,19 @@ mod tests {
 
     #[test]
     fn mistakes_are_usage_errors() {
-        for wrong in [["--scale", "huge"], ["--convention", "mine"], ["--seed", "x"]] {
+        for wrong in [
+            ["--scale", "huge"],
+            ["--convention", "mine"],
+            ["--seed", "x"],
+            ["--degree", "0"],
+        ] {
             assert_eq!(read(&wrong).unwrap_err().exit_code(), 2);
         }
-        assert!(read(&["--convention", "mine"]).unwrap_err().to_string().contains("frogger"));
+        assert!(
+            read(&["--convention", "mine"])
+                .unwrap_err()
+                .to_string()
+                .contains("frogger")
+        );
     }
 }

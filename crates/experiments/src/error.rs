@@ -14,7 +14,9 @@ pub enum ExperimentError {
         reason: std::io::Error,
     },
     /// Too few objects are left.
-    #[error("{fitted} of {given} objects of {source_name} can be used; expected at least {needed}{reasons}")]
+    #[error(
+        "{fitted} of {given} objects of {source_name} can be used; expected at least {needed}{reasons}"
+    )]
     TooFewObjects {
         /// Objects with a fitted surface.
         fitted: usize,
@@ -33,6 +35,9 @@ pub enum ExperimentError {
         /// Poses tried on each object.
         poses: usize,
     },
+    /// No convention has this name.
+    #[error(transparent)]
+    Convention(#[from] grasp::UnknownConvention),
     /// A fit failed.
     #[error("{id}: {source}")]
     Fit {
@@ -70,6 +75,9 @@ pub enum ExperimentError {
         /// What the system says.
         reason: std::io::Error,
     },
+    /// The library could not be put into bytes.
+    #[error(transparent)]
+    Record(#[from] record::EnvelopeError),
     /// A result could not be put into JSON.
     #[error("cannot write JSON: {0}")]
     Json(#[from] serde_json::Error),
@@ -83,7 +91,11 @@ impl ExperimentError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Folder { .. } | Self::TooFewObjects { .. } | Self::Cloud(_) => 3,
-            Self::Output { .. } | Self::Json(_) | Self::Threads(_) | Self::Hand(_) => 1,
+            Self::Output { .. }
+            | Self::Record(_)
+            | Self::Json(_)
+            | Self::Threads(_)
+            | Self::Hand(_) => 1,
             _ => 4,
         }
     }

@@ -73,9 +73,10 @@ impl Objects {
                 .par_iter()
                 .map(|object| scan(object, seed))
                 .collect(),
-            ObjectSource::Folder(folder) => {
-                ply_files(folder)?.par_iter().map(|path| read(path)).collect()
-            }
+            ObjectSource::Folder(folder) => ply_files(folder)?
+                .par_iter()
+                .map(|path| read(path))
+                .collect(),
         };
         let mut objects = Self {
             source: source.clone(),
@@ -142,7 +143,11 @@ fn ply_files(folder: &Path) -> Result<Vec<PathBuf>, ExperimentError> {
 }
 
 fn read(path: &Path) -> Result<ObjectCloud, Refused> {
-    let id = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let id = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
     let cloud = std::fs::read(path)
         .map_err(|error| error.to_string())
         .and_then(|bytes| shape::io::read_ply(&bytes).map_err(|error| error.to_string()))
@@ -176,7 +181,11 @@ mod tests {
         std::fs::write(folder.path().join("notes.txt"), "not looked at").unwrap();
         let source = ObjectSource::Folder(folder.path().to_owned());
         let objects = Objects::load(&source, 0).unwrap();
-        let ids: Vec<_> = objects.clouds.iter().map(|c| (c.id.as_str(), c.number)).collect();
+        let ids: Vec<_> = objects
+            .clouds
+            .iter()
+            .map(|c| (c.id.as_str(), c.number))
+            .collect();
         assert_eq!(ids, [("a", 1), ("b", 3)]);
         assert_eq!(objects.refused.len(), 1);
         assert_eq!(objects.refused[0].id, "aa");
@@ -194,7 +203,10 @@ mod tests {
         let objects = Objects::load(&ObjectSource::Builtin, 3).unwrap();
         assert_eq!(objects.clouds.len(), 12);
         let ids = |o: Objects| o.clouds.into_iter().map(|c| c.id).collect::<Vec<_>>();
-        assert_eq!(ids(objects.clone().select(&[2, 5, 12])), ["S2", "S5", "S12"]);
+        assert_eq!(
+            ids(objects.clone().select(&[2, 5, 12])),
+            ["S2", "S5", "S12"]
+        );
         assert_eq!(ids(objects.select(&[2, 13])), ["S1", "S2"]);
     }
 }

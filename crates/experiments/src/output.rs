@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use grasp::{CentreRule, Convention, EdgeNorm, Edges, TorqueLength};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::error::ExperimentError;
 use crate::table::Table;
@@ -19,37 +18,6 @@ pub struct Findings {
     pub ours: Value,
     /// The main numbers for people.
     pub table: Table,
-}
-
-/// A convention in full, so that a number can be computed again elsewhere.
-pub fn describe_convention(convention: &Convention) -> Value {
-    let edge_norm = match convention.edge_norm {
-        EdgeNorm::UnitNormalComponent => "unit_normal_component",
-        EdgeNorm::UnitLength => "unit_length",
-    };
-    let torque_length = match convention.torque_length {
-        TorqueLength::Metres(metres) => json!(metres),
-        TorqueLength::MaxContactDistance => json!("largest distance of the surface from the centre"),
-    };
-    let centre = match convention.centre {
-        CentreRule::CloudMean => "cloud_mean",
-        CentreRule::CentreOfMass => "centre_of_mass",
-        CentreRule::ObjectOrigin => "object_origin",
-        CentreRule::Given => "given",
-    };
-    let edges = match convention.edges {
-        Edges::Polygon(count) => json!(count),
-        Edges::Round { tolerance } => json!({ "round_to": tolerance }),
-    };
-    json!({
-        "name": convention.name,
-        "edge_norm": edge_norm,
-        "torque_length_m": torque_length,
-        "centre": centre,
-        "friction": convention.friction,
-        "edges": edges,
-        "not_closed": convention.not_closed,
-    })
 }
 
 /// Writes bytes to `folder/name` by way of a temporary name, making the folder where needed.
@@ -95,14 +63,5 @@ mod tests {
         let error = write(&file, "a.json", b"").unwrap_err();
         assert!(error.to_string().contains("file"));
         assert_eq!(error.exit_code(), 1);
-    }
-
-    #[test]
-    fn every_convention_is_described() {
-        for name in Convention::NAMES {
-            let value = describe_convention(&Convention::named(name).unwrap());
-            assert_eq!(value["name"], name);
-            assert!(value["friction"].as_f64().is_some_and(|mu| mu > 0.0));
-        }
     }
 }

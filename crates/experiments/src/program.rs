@@ -4,12 +4,12 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::time::Instant;
 
+use record::grasps::ConventionRecord;
 use serde_json::json;
 
 use crate::args::Args;
 use crate::error::ExperimentError;
-use crate::output::{Findings, describe_convention, write};
-use crate::paper;
+use crate::output::{Findings, write};
 use crate::run::{Run, fit_settings};
 
 /// A section of the paper as a function.
@@ -52,11 +52,13 @@ pub fn execute(name: &str, args: &Args, section: Section) -> Result<String, Expe
         scale: args.scale,
         seed: args.seed,
         convention: args.convention.clone(),
-        fit: fit_settings(paper::DEGREE, None),
+        fit: fit_settings(args.degree, args.lambda),
         progress: &progress,
     };
     let threads = args.threads.unwrap_or(0);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()?;
     let findings = pool.install(|| section(&run))?;
     let seconds = start.elapsed().as_secs_f64();
     let value = json!({
@@ -65,12 +67,16 @@ pub fn execute(name: &str, args: &Args, section: Section) -> Result<String, Expe
         "seed": args.seed,
         "threads": pool.current_num_threads(),
         "objects": findings.objects,
-        "convention": describe_convention(&args.convention),
+        "convention": ConventionRecord::from(&args.convention),
         "paper": findings.paper,
         "ours": findings.ours,
         "seconds": seconds,
     });
-    let path = write(&args.out, &format!("{name}.json"), &serde_json::to_vec_pretty(&value)?)?;
+    let path = write(
+        &args.out,
+        &format!("{name}.json"),
+        &serde_json::to_vec_pretty(&value)?,
+    )?;
     let mut text = findings.table.to_string();
     for refused in findings.objects["refused"].as_array().into_iter().flatten() {
         let word = |key: &str| refused[key].as_str().unwrap_or_default().to_owned();

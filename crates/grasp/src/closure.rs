@@ -2,7 +2,7 @@
 
 use crate::contact::Contact;
 use crate::convention::Convention;
-use crate::linear::{Outcome, Programme};
+use crate::quality::min_weight_of;
 use crate::wrench::{Wrench, WrenchError, wrenches};
 use nalgebra::{DMatrix, Point3};
 
@@ -38,32 +38,6 @@ fn spans(wrenches: &[Wrench]) -> bool {
     let matrix = DMatrix::from_fn(6, wrenches.len(), |i, j| wrenches[j][i]);
     let values = matrix.singular_values();
     values[5] > RANK_TOLERANCE * values[0]
-}
-
-/// The largest ℓ with Σ α_i w_i = 0, Σ α_i = 1 and all α_i ≥ ℓ, times the number of wrenches; None
-/// where not even ℓ = 0 is possible.
-pub(crate) fn min_weight_of(wrenches: &[Wrench]) -> Option<f64> {
-    // α_i = ℓ + s_i with s, ℓ ≥ 0; the forces and torques are scaled to the same size.
-    let n = wrenches.len();
-    let reach = wrenches.iter().map(|w| w.norm()).fold(0.0, f64::max);
-    let mut rows: Vec<Vec<f64>> = (0..6)
-        .map(|k| {
-            let mut row: Vec<f64> = wrenches.iter().map(|w| w[k] / reach).collect();
-            row.push(row.iter().sum());
-            row
-        })
-        .collect();
-    let mut sum = vec![1.0; n];
-    sum.push(n as f64);
-    rows.push(sum);
-    let mut right = vec![0.0; 7];
-    right[6] = 1.0;
-    let mut cost = vec![0.0; n + 1];
-    cost[n] = -1.0;
-    match (Programme { rows, right, cost }).solve() {
-        Outcome::Optimal { value, .. } => Some(-value * n as f64),
-        _ => None,
-    }
 }
 
 #[cfg(test)]

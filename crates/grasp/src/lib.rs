@@ -14,6 +14,7 @@ mod gradient;
 pub mod hull;
 mod linear;
 mod quality;
+mod resistance;
 mod wrench;
 
 pub use closure::{force_closed, wrenches_force_closed};
@@ -26,8 +27,10 @@ pub use finger::{Finger, FingerError, Setup};
 pub use friction::{cone_edges, cone_edges_from, tangent};
 pub use gradient::{FrameRule, Gradient, facet_gradient};
 pub use quality::{
-    ActiveFacet, BatchError, Carrier, Epsilon, Margin, QualityError, Workspace, epsilon,
-    epsilon_batch, epsilon_of, epsilon_of_wrenches, epsilon_quality, margin, near_active_facets,
-    volume,
+    ActiveFacet, BatchError, Carrier, Epsilon, Margin, QualityError, Workspace, closed_radius,
+    epsilon, epsilon_batch, epsilon_linf, epsilon_of, epsilon_of_wrenches, epsilon_quality,
+    least_friction, lipschitz_constant, margin, min_weight, near_active_facets,
+    smallest_singular_value, volume,
 };
+pub use resistance::{Resistance, resist};
 pub use wrench::{Wrench, WrenchError, wrench, wrenches, wrenches_into, wrenches_with_tangents};

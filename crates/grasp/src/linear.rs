@@ -1,13 +1,17 @@
 //! A small dense linear programme: min c·x subject to A x = b, x ≥ 0.
 //!
-//! Two-phase tableau simplex with Bland's rule, for the dozen rows and few hundred columns that
+//! Two-phase tableau simplex for the dozen rows and few hundred columns that
 //! grasps ask for. The artificial columns stay in the tableau, which so yields the multipliers.
 
 /// How a programme ends.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Outcome {
     /// The minimum: the point, the value and the multipliers y of the rows (c − Aᵀy ≥ 0, b·y = value).
-    Optimal { x: Vec<f64>, value: f64 },
+    Optimal {
+        x: Vec<f64>,
+        value: f64,
+        multipliers: Vec<f64>,
+    },
     /// No feasible point: y with Aᵀy ≤ 0 and b·y > 0 proves it.
     Infeasible { certificate: Vec<f64> },
     /// The objective falls without bound.
@@ -23,6 +27,8 @@ pub(crate) struct Programme {
 }
 
 const TOLERANCE: f64 = 1e-11;
+/// Far more than any programme of a grasp takes; a point feasible so far is then returned.
+const MOST_PIVOTS: usize = 100_000;
 
 struct Tableau {
     /// Each row: variables, artificials, right-hand side.
@@ -46,12 +52,7 @@ impl Programme {
         tableau.run(&mut phase1, &mut phase2);
         let size = self.right.iter().map(|b| b.abs()).fold(1e-300, f64::max);
         if -phase1[n + m] > 1e-9 * size {
-            let certificate = (0..m)
-                .map(|i| {
-                    let y = 1.0 - phase1[n + i];
-                    if tableau.flipped[i] { -y } else { y }
-                })
-                .collect();
+            let certificate = multipliers(&phase1, n, &tableau.flipped, 1.0);
             return Outcome::Infeasible { certificate };
         }
         tableau.expel_artificials(&mut phase2);
@@ -68,6 +69,7 @@ impl Programme {
         Outcome::Optimal {
             x,
             value: -phase2[n + m],
+            multipliers: multipliers(&phase2, n, &tableau.flipped, 0.0),
         }
     }
 
@@ -96,15 +98,25 @@ impl Programme {
 
 impl Tableau {
     /// Pivots until no reduced cost is negative; false if the objective is unbounded.
+    ///
+    /// The steepest column enters first; where that goes on for long the programme is degenerate and
+    /// Bland's rule, which cannot cycle, takes over.
     fn run(&mut self, objective: &mut [f64], other: &mut [f64]) -> bool {
-        loop {
-            let entering = (0..self.variables).find(|&j| objective[j] < -TOLERANCE);
+        let patience = 10 * (self.rows.len() + 1);
+        for pivot in 0..MOST_PIVOTS {
+            let mut candidates = (0..self.variables).filter(|&j| objective[j] < -TOLERANCE);
+            let entering = if pivot < patience {
+                candidates.min_by(|&a, &b| objective[a].total_cmp(&objective[b]))
+            } else {
+                candidates.next()
+            };
             let Some(j) = entering else { return true };
             let Some(i) = self.leaving(j) else {
                 return false;
             };
             self.pivot(i, j, objective, other);
         }
+        true
     }
 
     /// The row of the smallest ratio, the lowest variable on ties.
@@ -169,6 +181,15 @@ impl Tableau {
     }
 }
 
+/// The multipliers of the rows: what the artificial columns cost less their reduced costs.
+fn multipliers(objective: &[f64], first: usize, flipped: &[bool], cost: f64) -> Vec<f64> {
+    let signed = |(i, &flip): (usize, &bool)| {
+        let y = cost - objective[first + i];
+        if flip { -y } else { y }
+    };
+    flipped.iter().enumerate().map(signed).collect()
+}
+
 fn subtract(row: &mut [f64], factor: f64, pivot: &[f64]) {
     if factor != 0.0 {
         for (x, p) in row.iter_mut().zip(pivot) {
@@ -189,10 +210,17 @@ mod tests {
             right: vec![4.0, 6.0],
             cost: vec![-1.0, -2.0, 0.0, 0.0],
         };
-        let Outcome::Optimal { x, value } = programme.solve() else {
+        let Outcome::Optimal {
+            x,
+            value,
+            multipliers,
+        } = programme.solve()
+        else {
             panic!("bounded and feasible");
         };
         assert!((value + 5.0).abs() <= 1e-12);
+        assert!((multipliers[0] + 0.5).abs() <= 1e-12);
+        assert!((multipliers[1] + 0.5).abs() <= 1e-12);
         assert!((x[0] - 3.0).abs() <= 1e-12 && (x[1] - 1.0).abs() <= 1e-12);
     }
 

@@ -4,8 +4,8 @@
 
 use grasp::hull::ConvexHull;
 use grasp::{
-    Contact, Convention, EdgeNorm, Edges, TorqueLength, Workspace, Wrench, epsilon,
-    epsilon_of_wrenches, wrenches_force_closed, wrenches_with_tangents,
+    Contact, Convention, EdgeNorm, Edges, Setup, TorqueLength, Workspace, Wrench, epsilon,
+    epsilon_linf, epsilon_of_wrenches, wrenches_force_closed, wrenches_with_tangents,
 };
 use nalgebra::{Point3, Unit, UnitVector3, Vector3};
 use std::path::PathBuf;
@@ -145,6 +145,15 @@ fn sums_of_every_reference_row_that_has_them() {
     let mut seen = 0;
     for (index, row) in rows.iter().enumerate() {
         let Some(expected) = row.q_linf else { continue };
+        let setup = Setup {
+            contacts: &row.contacts,
+            centre: &row.centre,
+            convention: &row.convention,
+            fingers: &[],
+        };
+        let by_support = epsilon_linf(&setup, &mut workspace).unwrap();
+        let error = (by_support.quality - expected).abs();
+        assert!(error <= 1e-9, "row {index}: {by_support:?} {expected}");
         let found = epsilon_of_wrenches(&row.sums(), &mut workspace)
             .unwrap()
             .quality;

@@ -1,7 +1,10 @@
 //! Climbing in quality on one surface.
 
+mod bundle;
+mod monotone;
 mod paper;
 
+pub use monotone::MonotoneAscent;
 pub use paper::PaperAscent;
 
 use sph::Direction;
@@ -13,7 +16,8 @@ pub struct Step<'a> {
     pub contacts: &'a [Direction],
     /// Q there.
     pub quality: f64,
-    /// Length of the gradient of Q, by radian; 0 at a smooth maximum.
+    /// Slope of Q that is left, per radian: of the one gradient in the paper's ascent, of what all
+    /// deciding facets allow in ours; 0 at a maximum.
     pub stationarity: f64,
 }
 

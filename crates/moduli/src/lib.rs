@@ -13,9 +13,9 @@ pub mod point;
 pub mod sample;
 pub mod transfer;
 
-pub use ascent::{Ascent, PaperAscent, Step};
+pub use ascent::{Ascent, MonotoneAscent, PaperAscent, Step};
 pub use metric::MetricError;
 pub use objective::Objective;
 pub use path::Path;
 pub use point::ModuliPoint;
-pub use transfer::{PaperTransfer, TransferError, Transferred};
+pub use transfer::{Continuation, PaperTransfer, TransferError, Transferred};

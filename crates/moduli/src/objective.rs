@@ -1,6 +1,9 @@
 //! Grasp quality as a function of contacts on one surface, under one convention.
 
-use grasp::{CentreRule, Contact, Convention, Epsilon, QualityError, TorqueLength, Workspace};
+use grasp::{
+    ActiveFacet, CentreRule, Contact, Convention, Epsilon, FrameRule, Gradient, Margin,
+    QualityError, Setup, TorqueLength, Workspace,
+};
 use nalgebra::Point3;
 use shape::Surface;
 use sph::Direction;
@@ -81,6 +84,37 @@ impl Objective {
         )
     }
 
+    /// Q, or minus the distance from force closure, with the facet that decides.
+    pub fn margin(&mut self, contacts: &[Contact]) -> Result<Margin, QualityError> {
+        self.evaluations += 1;
+        let setup = setup(contacts, &self.centre, &self.convention);
+        grasp::margin(&setup, &mut self.workspace)
+    }
+
+    /// The facets whose offset is within `band` of Q, the nearest first; none for an open grasp.
+    pub fn near_active_facets(
+        &mut self,
+        contacts: &[Contact],
+        band: f64,
+        facets: &mut Vec<ActiveFacet>,
+    ) -> Result<(), QualityError> {
+        self.evaluations += 1;
+        let setup = setup(contacts, &self.centre, &self.convention);
+        grasp::near_active_facets(&setup, band, &mut self.workspace, facets)
+    }
+
+    /// How a facet's offset changes with the contacts and their normals.
+    pub fn facet_gradient(
+        &self,
+        contacts: &[Contact],
+        facet: &ActiveFacet,
+        frame: FrameRule,
+        gradient: &mut Gradient,
+    ) -> Result<(), QualityError> {
+        let setup = setup(contacts, &self.centre, &self.convention);
+        Ok(grasp::facet_gradient(&setup, facet, frame, gradient)?)
+    }
+
     /// Q ≥ 0 of contacts; 0 when they are not force-closed, whatever the convention prints then.
     pub fn quality(&mut self, contacts: &[Contact]) -> Result<f64, QualityError> {
         Ok(self.epsilon(contacts)?.quality)
@@ -98,5 +132,19 @@ impl Objective {
         let quality = self.quality(&contacts);
         self.contacts = contacts;
         quality
+    }
+}
+
+/// A grasp of the convention's own hard fingers.
+fn setup<'a>(
+    contacts: &'a [Contact],
+    centre: &'a Point3<f64>,
+    convention: &'a Convention,
+) -> Setup<'a> {
+    Setup {
+        contacts,
+        centre,
+        convention,
+        fingers: &[],
     }
 }

@@ -6,7 +6,7 @@ use shape::RadialShape;
 use shape::space::{SpaceError, deformation};
 use sph::Direction;
 
-use crate::ascent::{PaperAscent, Step};
+use crate::ascent::{Ascent, MonotoneAscent, PaperAscent, Step};
 use crate::objective::Objective;
 
 /// Why a transfer has no end.
@@ -76,11 +76,7 @@ pub struct PaperTransfer {
 impl PaperTransfer {
     /// The shapes γ(k/n), k = 0 … n; shared by all grasps of a pair.
     pub fn stations(&self, transfer: &Transfer) -> Result<Vec<RadialShape>, TransferError> {
-        let n = self.intervals.max(1);
-        (0..=n)
-            .map(|k| deformation(transfer.from, transfer.to, k as f64 / n as f64))
-            .collect::<Result<_, _>>()
-            .map_err(TransferError::from)
+        stations(transfer, self.intervals)
     }
 
     /// Carries one grasp over `stations`; `trace` sees (t, state).
@@ -91,27 +87,131 @@ impl PaperTransfer {
         contacts: &[Direction],
         mut trace: impl FnMut(f64, &Step),
     ) -> Result<Transferred, TransferError> {
-        let mut here = contacts.to_vec();
-        let mut start_quality = None;
-        let mut quality = 0.0;
-        let mut evaluations = 0;
-        let last = stations.len().saturating_sub(1).max(1) as f64;
-        for (k, station) in stations.iter().enumerate() {
-            let mut objective = transfer.objective(station);
-            let t = k as f64 / last;
-            let ascent = self
-                .ascent
-                .climb(station, &here, &mut objective, |step| trace(t, step))?;
-            start_quality.get_or_insert(ascent.start_quality);
-            quality = ascent.quality;
-            evaluations += ascent.evaluations;
-            here = ascent.contacts;
+        carry_over(
+            transfer,
+            stations,
+            contacts,
+            |t, station, here, objective| {
+                self.ascent
+                    .climb(station, here, objective, |step| trace(t, step))
+            },
+        )
+    }
+}
+
+/// Our transfer: a monotone ascent at each station, a longer one on the target, and a second path.
+///
+/// A continuation can follow an optimum into a poor corner, while the naive transfer may land near
+/// a good one; both are climbed on the target and the better is returned, so the result is never
+/// below the naive transfer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Continuation {
+    /// n intervals, n + 1 stations.
+    pub intervals: usize,
+    /// The ascent at each station but the last.
+    pub along: MonotoneAscent,
+    /// The ascent on the target.
+    pub at_end: MonotoneAscent,
+}
+
+impl Default for Continuation {
+    /// Four intervals with short ascents, then a full one.
+    fn default() -> Self {
+        let at_end = MonotoneAscent::default();
+        Self {
+            intervals: 4,
+            along: MonotoneAscent {
+                steps: 20,
+                ..at_end
+            },
+            at_end,
         }
+    }
+}
+
+impl Continuation {
+    /// The shapes γ(k/n), k = 0 … n; shared by all grasps of a pair.
+    pub fn stations(&self, transfer: &Transfer) -> Result<Vec<RadialShape>, TransferError> {
+        stations(transfer, self.intervals)
+    }
+
+    /// Carries one grasp over `stations`; `trace` sees (t, state) of the continuation.
+    pub fn carry(
+        &self,
+        transfer: &Transfer,
+        stations: &[RadialShape],
+        contacts: &[Direction],
+        mut trace: impl FnMut(f64, &Step),
+    ) -> Result<Transferred, TransferError> {
+        let climb = |t: f64| if t < 1.0 { self.along } else { self.at_end };
+        let followed = carry_over(
+            transfer,
+            stations,
+            contacts,
+            |t, station, here, objective| {
+                climb(t).climb(station, here, objective, |step| trace(t, step))
+            },
+        )?;
+        let target = &stations[stations.len().saturating_sub(1)..];
+        let jumped = carry_over(transfer, target, contacts, |_, station, here, objective| {
+            self.at_end.climb(station, here, objective, |_| {})
+        })?;
+        let evaluations = followed.evaluations + jumped.evaluations;
+        let start_quality = followed.start_quality;
+        let best = if jumped.quality > followed.quality {
+            jumped
+        } else {
+            followed
+        };
         Ok(Transferred {
-            contacts: here,
-            start_quality: start_quality.unwrap_or(0.0),
-            quality,
             evaluations,
+            start_quality,
+            ..best
         })
     }
+}
+
+fn stations(transfer: &Transfer, intervals: usize) -> Result<Vec<RadialShape>, TransferError> {
+    let n = intervals.max(1);
+    (0..=n)
+        .map(|k| deformation(transfer.from, transfer.to, k as f64 / n as f64))
+        .collect::<Result<_, _>>()
+        .map_err(TransferError::from)
+}
+
+/// Climbs at every station in turn, each from where the one before ended.
+fn carry_over(
+    transfer: &Transfer,
+    stations: &[RadialShape],
+    contacts: &[Direction],
+    mut climb: impl FnMut(
+        f64,
+        &RadialShape,
+        &[Direction],
+        &mut Objective,
+    ) -> Result<Ascent, QualityError>,
+) -> Result<Transferred, TransferError> {
+    let mut arrived = Transferred {
+        contacts: contacts.to_vec(),
+        start_quality: 0.0,
+        quality: 0.0,
+        evaluations: 0,
+    };
+    let last = stations.len().saturating_sub(1).max(1) as f64;
+    for (k, station) in stations.iter().enumerate() {
+        let mut objective = transfer.objective(station);
+        let t = if k + 1 == stations.len() {
+            1.0
+        } else {
+            k as f64 / last
+        };
+        let ascent = climb(t, station, &arrived.contacts, &mut objective)?;
+        if k == 0 {
+            arrived.start_quality = ascent.start_quality;
+        }
+        arrived.quality = ascent.quality;
+        arrived.evaluations += ascent.evaluations;
+        arrived.contacts = ascent.contacts;
+    }
+    Ok(arrived)
 }

@@ -31,7 +31,7 @@ fn distance(w: f64, a: &ModuliPoint<RadialShape>, b: &ModuliPoint<RadialShape>) 
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn the_weighted_metric_is_a_metric(seed in 0_u64..1000, w in 0.0..=1.0_f64) {

@@ -12,7 +12,7 @@ pub(crate) fn arrow(tail: [f64; 3], tip: [f64; 3], radius: f64) -> Mesh {
     let along = subtract(tip, tail);
     let length = norm(along);
     let mut mesh = Mesh::default();
-    if !(length > 0.0) {
+    if length <= 0.0 {
         return mesh;
     }
     let axis = scale(along, 1.0 / length);

@@ -32,8 +32,10 @@ mod scene_item;
 mod table;
 mod text;
 mod theme;
+mod trace;
+mod view;
 
-pub use bars::{Bars, BarSeries, Histogram, Sample};
+pub use bars::{BarSeries, Bars, Histogram, Sample};
 pub use chart::{Axis, AxisScale, Chart, Mark, Series};
 pub use error::ReportError;
 pub use grasp_page::{GraspPage, PageGrasp, grasp_page};

@@ -59,9 +59,9 @@ impl Extent {
 
     pub(crate) fn grow(&mut self, points: &[[f64; 3]]) {
         for point in points {
-            for axis in 0..3 {
-                self.low[axis] = self.low[axis].min(point[axis]);
-                self.high[axis] = self.high[axis].max(point[axis]);
+            for (axis, &value) in point.iter().enumerate() {
+                self.low[axis] = self.low[axis].min(value);
+                self.high[axis] = self.high[axis].max(value);
             }
         }
     }

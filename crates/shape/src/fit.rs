@@ -3,8 +3,11 @@
 use nalgebra::Point3;
 use sph::regression::{Gram, Penalty, RegressionError, Samples};
 
-use crate::point_cloud::PointCloud;
+use crate::outliers::stray_points;
+use crate::point_cloud::{CloudError, PointCloud};
 use crate::radial::{RadialError, RadialShape};
+use crate::star::{Crossing, StarShape, star_shape};
+use crate::unseen::filled_in;
 
 /// How a cloud is turned into a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +21,20 @@ pub struct FitSettings {
 /// Exponent of l(l+1) in the penalty: the spherical thin-plate spline.
 pub const PENALTY_POWER: i32 = 2;
 
+/// [`StarShape::multiple`] above which a cloud is refused. Scans of objects that a radius can
+/// describe stay below 0.05, also with ears and handles; a mug has 0.41 and a bowl 0.57.
+pub const MOST_MULTIPLE: f64 = 0.2;
+
+/// A chosen λ is raised until the surface stays below this many times the largest radius seen.
+const MOST_OVERSHOOT: f64 = 1.25;
+/// By how much, and how often.
+const RAISE: f64 = 10.0;
+const RAISES: usize = 6;
+/// Fits of a cloud with outliers; the last one is kept as it is.
+const ROUNDS: usize = 4;
+/// Outliers fewer than this share of the points do not move the surface: no further fit.
+const NOTICEABLE: f64 = 5e-4;
+
 /// Why a cloud has no surface in M^rad.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
@@ -27,6 +44,37 @@ pub enum FitError {
     /// The fitted function is no radius.
     #[error(transparent)]
     Radial(#[from] RadialError),
+    /// No radius over the directions can describe the cloud.
+    #[error(
+        "not star-shaped: in {percent:.0} % of the directions the surface is met twice (limit {limit_percent:.0} %), most clearly along ({x:.3}, {y:.3}, {z:.3}) from the mean, at {inner:.4} m and {outer:.4} m, and {unseen_percent:.0} % of the directions hold no point; scan it closed, cut it into parts, or choose another object",
+        percent = 100.0 * star.multiple,
+        limit_percent = 100.0 * MOST_MULTIPLE,
+        unseen_percent = 100.0 * star.unseen,
+        x = worst.direction.x,
+        y = worst.direction.y,
+        z = worst.direction.z,
+        inner = worst.inner,
+        outer = worst.outer,
+    )]
+    NotStarShaped {
+        /// The measure, with every direction in question.
+        star: Box<StarShape>,
+        /// The clearest of them.
+        worst: Crossing,
+    },
+    /// The surface leaves the data by far, and no penalty tried keeps it close.
+    #[error(
+        "the surface reaches {reached:.4} m where the data end at {seen:.4} m; a lower degree or a more complete scan may help"
+    )]
+    Overshoot {
+        /// Certified upper bound of the radius, metres.
+        reached: f64,
+        /// Largest radius among the points, metres.
+        seen: f64,
+    },
+    /// Too few points remain.
+    #[error(transparent)]
+    Cloud(#[from] CloudError),
 }
 
 /// A fitted surface and how well it fits.
@@ -34,48 +82,163 @@ pub enum FitError {
 pub struct Fit {
     /// The surface, in the centred frame.
     pub shape: RadialShape,
-    /// Origin of the centred frame in the frame of the cloud: the mean of the cloud. Metres.
+    /// Origin of the centred frame in the frame of the cloud: the mean of the points used. Metres.
     pub centre_in_cloud: Point3<f64>,
     /// λ used.
     pub lambda: f64,
-    /// Root mean square of |rᵢ − r(pᵢ)|, metres.
+    /// Root mean square of |rᵢ − r(pᵢ)| over the points used, metres.
     pub rms: f64,
-    /// Largest |rᵢ − r(pᵢ)|, metres.
+    /// Largest |rᵢ − r(pᵢ)| over the points used, metres.
     pub max_abs: f64,
     /// Condition number of the penalised regression.
     pub condition: f64,
+    /// How close the cloud is to star-shaped, and where it has holes.
+    pub star: StarShape,
+    /// Points not used, as indices into the cloud: far from the surface and from other points.
+    pub outliers: Vec<usize>,
 }
 
 /// Fits r(p) = Σ β Y to the cloud seen from its mean (Sec. III-B and IV-A of the paper), with a
 /// penalty, and proves the result positive.
+///
+/// A cloud whose surface is met twice in more than [`MOST_MULTIPLE`] of the directions is refused.
+/// Points that are both far from the surface and alone are outliers: they lose their weight and
+/// the fit is repeated, at most four times; a cloud without them is fitted once. Directions in
+/// which nothing was seen take part with a membrane spanned from what was seen around them. A λ
+/// chosen from the data is raised if the surface is not proved positive or leaves the data by far;
+/// a λ that was given is not.
 pub fn fit(cloud: &PointCloud, settings: &FitSettings) -> Result<Fit, FitError> {
-    let centre = cloud.mean();
-    let seen = cloud.seen_from(&centre);
-    let samples = Samples {
-        directions: &seen.directions,
-        values: &seen.radii,
-    };
-    let gram = Gram::new(samples, settings.degree)?;
-    let penalty = match settings.lambda {
-        Some(lambda) => Penalty {
-            lambda,
-            power: PENALTY_POWER,
-        },
-        None => gram.choose_penalty(PENALTY_POWER)?,
-    };
-    let solution = gram.solve(samples, penalty)?;
-    let shape = RadialShape::new(solution.coefficients)?;
-    let (mut squares, mut max_abs) = (0.0, 0.0_f64);
-    for (fitted, radius) in shape.radii(&seen.directions).iter().zip(&seen.radii) {
-        squares += (fitted - radius).powi(2);
-        max_abs = max_abs.max((fitted - radius).abs());
+    let mut outliers: Vec<usize> = Vec::new();
+    let mut round = 0;
+    loop {
+        round += 1;
+        let view = View::new(cloud, &outliers)?;
+        let star = view.star_shape()?;
+        let solved = view.solve(settings, &star)?;
+        let residuals = view.residuals(&solved.shape);
+        let stray = stray_points(&view.points, &residuals);
+        let noticeable = stray.len() as f64 > NOTICEABLE * view.points.len() as f64;
+        if round == ROUNDS || !noticeable {
+            outliers.sort_unstable();
+            return Ok(solved.report(&view, &residuals, star, outliers));
+        }
+        outliers.extend(stray.iter().map(|i| view.index[*i]));
     }
-    Ok(Fit {
-        shape,
-        centre_in_cloud: centre,
-        lambda: penalty.lambda,
-        rms: (squares / seen.radii.len() as f64).sqrt(),
-        max_abs,
-        condition: solution.condition,
-    })
+}
+
+/// The points in use, seen from their mean.
+struct View {
+    centre: Point3<f64>,
+    /// Position of each point in the cloud.
+    index: Vec<usize>,
+    points: Vec<Point3<f64>>,
+    samples: crate::point_cloud::RadialSamples,
+}
+
+/// A regression that led to a shape.
+struct Solved {
+    shape: RadialShape,
+    lambda: f64,
+    condition: f64,
+}
+
+impl View {
+    fn new(cloud: &PointCloud, outliers: &[usize]) -> Result<Self, FitError> {
+        let mut used = vec![true; cloud.points().len()];
+        for &i in outliers {
+            used[i] = false;
+        }
+        let at = |i: usize| cloud.points()[i];
+        let all = (0..used.len()).filter(|i| used[*i]);
+        let centre = PointCloud::new(all.clone().map(at).collect())?.mean();
+        // A point at the centre has no direction.
+        let index: Vec<usize> = all.filter(|i| at(*i) != centre).collect();
+        let points: Vec<Point3<f64>> = index.iter().map(|i| at(*i)).collect();
+        let samples = PointCloud::new(points.clone())?.seen_from(&centre);
+        Ok(Self {
+            centre,
+            index,
+            points,
+            samples,
+        })
+    }
+
+    fn star_shape(&self) -> Result<StarShape, FitError> {
+        let star = star_shape(&self.samples);
+        match star.crossings.first() {
+            Some(&worst) if star.multiple > MOST_MULTIPLE => Err(FitError::NotStarShaped {
+                worst,
+                star: Box::new(star),
+            }),
+            _ => Ok(star),
+        }
+    }
+
+    fn solve(&self, settings: &FitSettings, star: &StarShape) -> Result<Solved, FitError> {
+        let (directions, values) = filled_in(&self.samples, &star.unseen_directions);
+        let samples = Samples {
+            directions: &directions,
+            values: &values,
+        };
+        let gram = Gram::new(samples, settings.degree)?;
+        let chosen = settings.lambda.is_none();
+        let mut penalty = match settings.lambda {
+            Some(lambda) => Penalty {
+                lambda,
+                power: PENALTY_POWER,
+            },
+            None => gram.choose_penalty(PENALTY_POWER)?,
+        };
+        let mut raises = if chosen { RAISES } else { 0 };
+        loop {
+            let solution = gram.solve(samples, penalty)?;
+            let shape = RadialShape::new(solution.coefficients).map_err(FitError::from);
+            match shape.and_then(|shape| self.not_too_far(shape, chosen)) {
+                Ok(shape) => {
+                    return Ok(Solved {
+                        shape,
+                        lambda: penalty.lambda,
+                        condition: solution.condition,
+                    });
+                }
+                Err(error) if raises == 0 => return Err(error),
+                Err(_) => {
+                    raises -= 1;
+                    penalty.lambda *= RAISE;
+                }
+            }
+        }
+    }
+
+    fn not_too_far(&self, shape: RadialShape, chosen: bool) -> Result<RadialShape, FitError> {
+        let seen = self.samples.radii.iter().fold(0.0_f64, |a, b| a.max(*b));
+        let reached = shape.radius_bounds().1;
+        if chosen && reached > MOST_OVERSHOOT * seen {
+            return Err(FitError::Overshoot { reached, seen });
+        }
+        Ok(shape)
+    }
+
+    /// r(pᵢ) − rᵢ.
+    fn residuals(&self, shape: &RadialShape) -> Vec<f64> {
+        let fitted = shape.radii(&self.samples.directions);
+        let pairs = fitted.iter().zip(&self.samples.radii);
+        pairs.map(|(fitted, radius)| fitted - radius).collect()
+    }
+}
+
+impl Solved {
+    fn report(self, view: &View, residuals: &[f64], star: StarShape, outliers: Vec<usize>) -> Fit {
+        let squares: f64 = residuals.iter().map(|e| e * e).sum();
+        Fit {
+            shape: self.shape,
+            centre_in_cloud: view.centre,
+            lambda: self.lambda,
+            rms: (squares / residuals.len() as f64).sqrt(),
+            max_abs: residuals.iter().fold(0.0, |worst, e| e.abs().max(worst)),
+            condition: self.condition,
+            star,
+            outliers,
+        }
+    }
 }

@@ -135,7 +135,7 @@ fn certify(coefficients: &Coefficients) -> Result<Range, RadialError> {
             return Ok(range);
         }
         let seen = range.seen_lower;
-        if !(seen > 0.0) {
+        if seen.is_nan() || seen <= 0.0 {
             return Err(RadialError::NotPositive { seen });
         }
         undecided = RadialError::Undecided {

@@ -69,7 +69,8 @@ pub fn convex_combination(
     shapes: &[&RadialShape],
 ) -> Result<RadialShape, SpaceError> {
     let sum: f64 = weights.iter().sum();
-    if !((sum - 1.0).abs() <= 1e-9) {
+    let off = (sum - 1.0).abs();
+    if off.is_nan() || off > 1e-9 {
         return Err(SpaceError::Sum { sum });
     }
     cone(weights, shapes)

@@ -1,6 +1,10 @@
 //! Least-squares fits of Σ β_{lm} Y_{lm} to samples of a function on the sphere.
 
+mod conjugate;
+mod dense;
 pub mod gram;
+mod likelihood;
+mod operator;
 pub mod penalty;
 pub mod qr;
 
@@ -51,6 +55,24 @@ pub enum RegressionError {
         coefficients: usize,
         /// Degree L.
         degree: usize,
+    },
+    /// The weights do not fit the samples: one finite weight ≥ 0 a sample, not all zero.
+    #[error("weight {index} is {value}; expected one finite weight a sample, none negative, one positive")]
+    Weight {
+        /// Which weight; the number of samples when their number is wrong.
+        index: usize,
+        /// The value found; NaN when there is none.
+        value: f64,
+    },
+    /// The iteration did not reach its accuracy and the problem is too large to factor.
+    #[error(
+        "degree {degree} not solved within {iterations} iterations; lower the degree or use a larger penalty"
+    )]
+    NotConverged {
+        /// Degree L.
+        degree: usize,
+        /// Iterations spent.
+        iterations: usize,
     },
     /// The penalty is not a finite number ≥ 0.
     #[error("penalty {lambda}; expected a finite number that is not negative")]

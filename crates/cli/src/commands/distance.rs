@@ -18,9 +18,7 @@ pub(crate) fn run(options: &DistanceOptions, common: &Common) -> Result<(), Fail
     let mut shapes = Vec::new();
     for path in &options.shapes {
         let record = input::shape_record(path)?;
-        let beta = record
-            .coefficients()
-            .map_err(|e| Failure::input(path, e))?;
+        let beta = record.coefficients().map_err(|e| Failure::input(path, e))?;
         shapes.push((record.name, beta));
     }
     if shapes.len() == 1 {
@@ -32,7 +30,11 @@ pub(crate) fn run(options: &DistanceOptions, common: &Common) -> Result<(), Fail
             shapes.push((format!("{} {}", entry.id, entry.name), beta));
         }
     }
-    let anchors = if options.shapes.len() == 1 { 1 } else { shapes.len() };
+    let anchors = if options.shapes.len() == 1 {
+        1
+    } else {
+        shapes.len()
+    };
     for (i, (a, beta_a)) in shapes[..anchors].iter().enumerate() {
         for (b, beta_b) in &shapes[i + 1..] {
             let line = DistanceLine {

@@ -56,11 +56,7 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
     let library = library::built_in()?;
     let neighbours = transfer::neighbours(&target, &library, options.neighbours)?;
     let bar = output::progress(common.quiet, 0, "transferring");
-    let plan = transfer::TransferPlan {
-        neighbours: options.neighbours,
-        grasps: options.transfers,
-    };
-    let transferred = transfer::candidates(&target, &neighbours, &plan, &bar)?;
+    let transferred = transfer::candidates(&target, &neighbours, options.transfers, &bar)?;
     bar.finish_and_clear();
 
     let hand = hand::schunk_sdh().map_err(|e| Failure::other(format!("the built-in hand: {e}")))?;
@@ -95,7 +91,14 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
         r_max_certified_m: r_max,
         neighbours: neighbours
             .iter()
-            .map(|n| format!("{} {} ({:.1} mm)", n.entry.id, n.entry.name, 1e3 * n.distance))
+            .map(|n| {
+                format!(
+                    "{} {} ({:.1} mm)",
+                    n.entry.id,
+                    n.entry.name,
+                    1e3 * n.distance
+                )
+            })
             .collect(),
         transferred: transferred.len(),
         transferred_closed: closed,
@@ -157,7 +160,10 @@ fn print_table(line: &GraspLine, file: &GraspsFile, reasons: &[(&'static str, us
         1e3 * line.r_min_certified_m,
         1e3 * line.r_max_certified_m
     ));
-    output::say(format!("nearest known objects: {}", line.neighbours.join(", ")));
+    output::say(format!(
+        "nearest known objects: {}",
+        line.neighbours.join(", ")
+    ));
     let rejected: Vec<String> = reasons
         .iter()
         .filter(|(_, count)| *count > 0)

@@ -40,9 +40,17 @@ fn shape_lines(record: &ShapeRecord) -> Result<Vec<String>, record::ShapeRecordE
         format!("shape       {}", record.name),
         format!("degree      {}", shape.degree()),
         format!("certified   {:.3} mm ≤ r ≤ {:.3} mm", 1e3 * low, 1e3 * high),
-        format!("fit         {} points, rms {:.3} mm, λ {:.3e}", record.points, 1e3 * record.rms_m, record.lambda),
+        format!(
+            "fit         {} points, rms {:.3} mm, λ {:.3e}",
+            record.points,
+            1e3 * record.rms_m,
+            record.lambda
+        ),
         format!("volume      {:.2} cm³", 1e6 * mass.volume),
-        format!("centre      {:?} m in the frame of the cloud", record.centre_in_cloud_m),
+        format!(
+            "centre      {:?} m in the frame of the cloud",
+            record.centre_in_cloud_m
+        ),
     ])
 }
 
@@ -56,7 +64,13 @@ fn library_lines(record: &LibraryRecord) -> Vec<String> {
     );
     let entries = record.entries.iter().map(|e| {
         let best = e.grasps.first().map_or(0.0, |g| g.quality);
-        format!("{:4} {:24} {:3} grasps, best {:.3}", e.id, e.name, e.grasps.len(), best)
+        format!(
+            "{:4} {:24} {:3} grasps, best {:.3}",
+            e.id,
+            e.name,
+            e.grasps.len(),
+            best
+        )
     });
     std::iter::once(head).chain(entries).collect()
 }
@@ -74,8 +88,14 @@ fn cloud_lines(cloud: &shape::PointCloud, dropped: usize) -> Vec<String> {
     let size = 1e3 * cloud.extent();
     let mean = cloud.mean();
     vec![
-        format!("cloud       {} points, {dropped} rows dropped", cloud.points().len()),
-        format!("extent      {:.1} × {:.1} × {:.1} mm, if the unit is metres", size.x, size.y, size.z),
+        format!(
+            "cloud       {} points, {dropped} rows dropped",
+            cloud.points().len()
+        ),
+        format!(
+            "extent      {:.1} × {:.1} × {:.1} mm, if the unit is metres",
+            size.x, size.y, size.z
+        ),
         format!("mean        {:.5} {:.5} {:.5}", mean.x, mean.y, mean.z),
     ]
 }

@@ -82,9 +82,8 @@ fn measure(
         .map(|(chunk, grasps)| {
             let mut work = Workspace::new();
             let one = |(i, g): (usize, &Grasp)| {
-                grasp::epsilon(&g.contacts, &g.centre, convention, &mut work).map_err(|e| {
-                    Failure::input(path, format!("grasp {}: {e}", chunk * CHUNK + i))
-                })
+                grasp::epsilon(&g.contacts, &g.centre, convention, &mut work)
+                    .map_err(|e| Failure::input(path, format!("grasp {}: {e}", chunk * CHUNK + i)))
             };
             grasps.iter().enumerate().map(one).collect()
         })
@@ -123,7 +122,10 @@ fn from_row(path: &Path, row: usize, cells: &[f64]) -> Result<Grasp, Failure> {
     if let Some(column) = cells.iter().position(|v| !v.is_finite()) {
         return Err(Failure::input(
             path,
-            format!("row {row}, column {column} is {}; expected a finite number", cells[column]),
+            format!(
+                "row {row}, column {column} is {}; expected a finite number",
+                cells[column]
+            ),
         ));
     }
     let triple = |k: usize| Vector3::new(cells[3 * k], cells[3 * k + 1], cells[3 * k + 2]);
@@ -157,10 +159,17 @@ fn read_csv(path: &Path) -> Result<Vec<Grasp>, Failure> {
         }
         let parse = |(column, cell): (usize, &&str)| {
             cell.parse::<f64>().map_err(|_| {
-                Failure::input(path, format!("{place}, column {column} is `{cell}`; expected a number"))
+                Failure::input(
+                    path,
+                    format!("{place}, column {column} is `{cell}`; expected a number"),
+                )
             })
         };
-        let cells: Vec<f64> = cells.iter().enumerate().map(parse).collect::<Result<_, _>>()?;
+        let cells: Vec<f64> = cells
+            .iter()
+            .enumerate()
+            .map(parse)
+            .collect::<Result<_, _>>()?;
         grasps.push(from_row(path, grasps.len(), &cells)?);
     }
     Ok(grasps)

@@ -97,10 +97,7 @@ fn source_record(source: &Source) -> SourceRecord {
 }
 
 /// The palm's pose in the frame of the cloud.
-pub(crate) fn cloud_from_palm(
-    placement: &HandPlacement,
-    centre: &Point3<f64>,
-) -> Isometry3<f64> {
+pub(crate) fn cloud_from_palm(placement: &HandPlacement, centre: &Point3<f64>) -> Isometry3<f64> {
     Translation3::from(centre.coords) * placement.object_from_palm
 }
 
@@ -109,6 +106,7 @@ fn hand_record(placement: &HandPlacement, hand: &Hand, centre: &Point3<f64>) -> 
     let joints: BTreeMap<String, f64> = hand
         .model()
         .driven_names()
+        .into_iter()
         .map(str::to_owned)
         .zip(placement.joints.iter().copied())
         .collect();

@@ -1,9 +1,9 @@
 //! Candidates carried over from the nearest library objects.
 
 use indicatif::ProgressBar;
+use moduli::Continuation;
 use moduli::point::contacts_on;
 use moduli::transfer::Transfer;
-use moduli::{PaperAscent, PaperTransfer};
 use rayon::prelude::*;
 use record::{LibraryEntry, LibraryRecord};
 use shape::RadialShape;
@@ -11,15 +11,6 @@ use sph::Direction;
 
 use super::{Candidate, Source, Target};
 use crate::failure::Failure;
-
-/// How much is transferred.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TransferPlan {
-    /// Library objects, the nearest first.
-    pub(crate) neighbours: usize,
-    /// Best grasps of each.
-    pub(crate) grasps: usize,
-}
 
 /// A library object near the target.
 pub(crate) struct Neighbour<'a> {
@@ -58,19 +49,18 @@ pub(crate) fn neighbours<'a>(
         .collect()
 }
 
-/// The best grasps of every neighbour, carried to the target.
+/// The best `grasps` grasps of every neighbour, carried to the target.
 ///
-/// The paper's scheme (Sec. IV-E) with fewer steps a station and a longer last climb; what ends
-/// open is kept as a candidate of quality 0.
+/// What ends open is kept as a candidate of quality 0, so that it is counted.
 pub(crate) fn candidates(
     target: &Target,
     neighbours: &[Neighbour],
-    plan: &TransferPlan,
+    grasps: usize,
     progress: &ProgressBar,
 ) -> Result<Vec<Candidate>, Failure> {
     let mut jobs = Vec::new();
     for neighbour in neighbours {
-        for grasp in neighbour.entry.grasps.iter().take(plan.grasps) {
+        for grasp in neighbour.entry.grasps.iter().take(grasps) {
             let directions = grasp.directions().ok_or_else(|| {
                 Failure::other(format!(
                     "library object {}: a contact is no unit vector",
@@ -105,14 +95,7 @@ fn carry(
         convention: &target.convention,
         object_origin: target.object_origin(),
     };
-    let scheme = PaperTransfer {
-        intervals: 10,
-        ascent: PaperAscent {
-            steps: 20,
-            delta: 1e-5,
-            rate: 0.01,
-        },
-    };
+    let scheme = Continuation::default();
     let stations = scheme.stations(&transfer).map_err(failed)?;
     let arrived = scheme
         .carry(&transfer, &stations, directions, |_, _| {})

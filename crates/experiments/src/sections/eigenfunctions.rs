@@ -71,7 +71,11 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
     row("orthonormality", ours.orthonormality_error, "0");
     row("against the formula of Sec. II-C", ours.formula_error, "0");
     row("ΔY = -l(l+1) Y, Hessian", ours.laplacian_error, "0");
-    row("ΔY = -l(l+1) Y, differences", ours.difference_laplacian_error, "0");
+    row(
+        "ΔY = -l(l+1) Y, differences",
+        ours.difference_laplacian_error,
+        "0",
+    );
     table.note("The paper prints ΔY = +l(l+1) Y; with its own Laplacian the sign is minus.");
     Ok(Findings {
         objects: json!({ "source": "none", "fitted": [], "refused": [] }),

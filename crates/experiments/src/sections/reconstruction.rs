@@ -108,7 +108,10 @@ pub fn measure(
 ) -> Result<Vec<Reconstruction>, ExperimentError> {
     let mut all = Vec::new();
     for object in objects {
-        run.say(&format!("fitting {} at degrees {:?}", object.id, plan.degrees));
+        run.say(&format!(
+            "fitting {} at degrees {:?}",
+            object.id, plan.degrees
+        ));
         let halves = halves(object, run.seed)?;
         let fits = plan
             .degrees
@@ -231,7 +234,18 @@ fn true_distance(
 fn table(objects: &Objects, fits: &[Reconstruction]) -> Table {
     let mut table = Table::new(
         "Fig. 2: error against L, in mm: plain least squares (as the paper) | with the penalty",
-        &["object", "L", "rms", "held out", "from truth", "M^rad", "rms", "held out", "from truth", "M^rad"],
+        &[
+            "object",
+            "L",
+            "rms",
+            "held out",
+            "from truth",
+            "M^rad",
+            "rms",
+            "held out",
+            "from truth",
+            "M^rad",
+        ],
     );
     for object in &objects.clouds {
         let mut degrees: Vec<usize> = fits.iter().map(|f| f.degree).collect();
@@ -239,9 +253,9 @@ fn table(objects: &Objects, fits: &[Reconstruction]) -> Table {
         degrees.dedup();
         for degree in degrees {
             let of = |penalised| {
-                let fit = fits.iter().find(|f| {
-                    f.id == object.id && f.degree == degree && f.penalised == penalised
-                });
+                let fit = fits
+                    .iter()
+                    .find(|f| f.id == object.id && f.degree == degree && f.penalised == penalised);
                 cells(fit)
             };
             let head = vec![object.id.clone(), degree.to_string()];

@@ -35,8 +35,12 @@ impl Plan {
     pub fn of(run: &Run) -> Self {
         Self {
             samples: run.scale.pick(4, 100),
-            coarse_sigmas: run.scale.pick(vec![0.005, 0.02], vec![0.0025, 0.005, 0.01, 0.02]),
-            fine_sigmas: run.scale.pick(vec![0.001, 0.004], vec![0.0005, 0.001, 0.002, 0.004]),
+            coarse_sigmas: run
+                .scale
+                .pick(vec![0.005, 0.02], vec![0.0025, 0.005, 0.01, 0.02]),
+            fine_sigmas: run
+                .scale
+                .pick(vec![0.001, 0.004], vec![0.0005, 0.001, 0.002, 0.004]),
         }
     }
 }
@@ -186,7 +190,16 @@ fn collect(name: &'static str, band: &Range<usize>, sigma: f64, samples: &[Sampl
 fn table(noise: &[Noise]) -> Table {
     let mut table = Table::new(
         "Sec. IV-B: noise on β_0…β_9 (coarse) and β_499…β_599 (fine)",
-        &["band", "σ mm", "samples", "in M^rad", "rms change mm", "waves", "rms slope", "force-closed"],
+        &[
+            "band",
+            "σ mm",
+            "samples",
+            "in M^rad",
+            "rms change mm",
+            "waves",
+            "rms slope",
+            "force-closed",
+        ],
     );
     for n in noise {
         table.row([

@@ -120,11 +120,16 @@ pub fn measure(run: &Run, plan: &Plan, set: &FittedSet) -> Result<ShapeSpace, Ex
     run.say(&format!("fitting {} spheres", plan.spheres));
     let spheres = fit_spheres(run, plan)?;
     let ways = deformations(set, plan.deformation_steps)?;
-    let objects = set.objects.iter().map(|o| (o.id().to_owned(), "object", o.shape()));
+    let objects = set
+        .objects
+        .iter()
+        .map(|o| (o.id().to_owned(), "object", o.shape()));
     let round = spheres
         .iter()
         .map(|(radius, shape)| (format!("sphere {:.1} mm", 1e3 * radius), "sphere", shape));
-    let between = ways.iter().map(|(label, shape)| (label.clone(), "deformation", shape));
+    let between = ways
+        .iter()
+        .map(|(label, shape)| (label.clone(), "deformation", shape));
     let all: Vec<_> = objects.chain(round).chain(between).collect();
     let shapes: Vec<&RadialShape> = all.iter().map(|(_, _, shape)| *shape).collect();
     run.say(&format!("scaling {} shapes", shapes.len()));
@@ -208,7 +213,11 @@ fn foot(beta: &Coefficients, from: &Coefficients, to: &Coefficients) -> f64 {
     let along = Coefficients::combination([(1.0, to), (-1.0, from)]);
     let towards = Coefficients::combination([(1.0, beta), (-1.0, from)]);
     let dot = |a: &Coefficients, b: &Coefficients| -> f64 {
-        a.as_slice().iter().zip(b.as_slice()).map(|(x, y)| x * y).sum()
+        a.as_slice()
+            .iter()
+            .zip(b.as_slice())
+            .map(|(x, y)| x * y)
+            .sum()
     };
     dot(&along, &towards) / dot(&along, &along)
 }
@@ -218,7 +227,9 @@ fn point_between(from: &Coefficients, to: &Coefficients, t: f64) -> Coefficients
 }
 
 fn passings(set: &FittedSet) -> Vec<Passing> {
-    let passed = paper::PASSED_BY_DEFORMATIONS.iter().filter_map(|&k| set.get(k));
+    let passed = paper::PASSED_BY_DEFORMATIONS
+        .iter()
+        .filter_map(|&k| set.get(k));
     passed
         .flat_map(|shape| ways(set).into_iter().map(move |way| (shape, way)))
         .map(|(shape, (from, to))| passing(set, shape, from, to))
@@ -265,7 +276,11 @@ fn sphere_line(spheres: &[(f64, RadialShape)], set: &FittedSet) -> Option<Sphere
         .iter()
         .map(|o| {
             let (distance, t) = from_line(o.shape().coefficients());
-            (o.id().to_owned(), distance, first.0 + t * (last.0 - first.0))
+            (
+                o.id().to_owned(),
+                distance,
+                first.0 + t * (last.0 - first.0),
+            )
         })
         .collect();
     objects_by_distance.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -279,7 +294,14 @@ fn sphere_line(spheres: &[(f64, RadialShape)], set: &FittedSet) -> Option<Sphere
 fn table(ours: &ShapeSpace) -> Table {
     let mut table = Table::new(
         "Sec. IV-A: which shapes the deformations pass (paper: S7 and S8)",
-        &["shape", "way", "at t", "distance mm", "of nearer end", "nearest there"],
+        &[
+            "shape",
+            "way",
+            "at t",
+            "distance mm",
+            "of nearer end",
+            "nearest there",
+        ],
     );
     for p in &ours.passings {
         table.row([

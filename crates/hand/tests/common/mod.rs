@@ -90,21 +90,41 @@ pub fn link_pieces(
         .collect()
 }
 
-/// Distance of a link to a mesh by parry; 0 where they meet, infinite without geometry.
+/// Distance of a link to a mesh by parry if it is below `margin`, else `margin`; 0 where they meet.
 pub fn link_distance(
     model: &HandModel,
     link: usize,
     pose_of_link: &Isometry3<f64>,
     mesh: &TriMesh,
+    margin: f64,
 ) -> f64 {
     link_pieces(model, link, pose_of_link)
         .iter()
         .map(|(at, piece)| {
-            query::distance(at, piece.as_ref(), &Pose::IDENTITY, mesh)
-                .unwrap()
-                .distance
+            match query::closest_points(at, piece.as_ref(), &Pose::IDENTITY, mesh, margin).unwrap()
+            {
+                query::ClosestPoints::Intersecting => 0.0,
+                query::ClosestPoints::WithinMargin(a, b) => (a - b).length(),
+                query::ClosestPoints::Disjoint => margin,
+            }
         })
-        .fold(f64::INFINITY, f64::min)
+        .fold(margin, f64::min)
+}
+
+/// Whether a link meets a mesh, by parry.
+pub fn link_meets(
+    model: &HandModel,
+    link: usize,
+    pose_of_link: &Isometry3<f64>,
+    mesh: &TriMesh,
+) -> bool {
+    link_pieces(model, link, pose_of_link)
+        .iter()
+        .any(|(at, piece)| {
+            query::intersection_test(at, piece.as_ref(), &Pose::IDENTITY, mesh)
+                .unwrap()
+                .intersecting
+        })
 }
 
 /// Distance of two links by parry.

@@ -131,10 +131,7 @@ fn elements<E: PropertyAccess>(
         // The parser counts rows of binary data as lines; the byte says more.
         _ => {
             let byte = length - reader.get_ref().len();
-            let PlyError::Parse { reason } = damage(error) else {
-                return PlyError::NoVertices;
-            };
-            let reason = format!("byte {byte}, element `{}`: {reason}", element.name);
+            let reason = format!("byte {byte}, element `{}`: {}", element.name, brief(error));
             PlyError::Parse { reason }
         }
     })
@@ -170,12 +167,17 @@ fn check_size(
 }
 
 fn damage(error: ParseError) -> PlyError {
+    PlyError::Parse {
+        reason: brief(error),
+    }
+}
+
+/// The parser's message in one line of bearable length.
+fn brief(error: ParseError) -> String {
     const LONGEST: usize = 200;
     let text = error.to_string();
     let words: Vec<&str> = text.split_whitespace().collect();
-    PlyError::Parse {
-        reason: words.join(" ").chars().take(LONGEST).collect(),
-    }
+    words.join(" ").chars().take(LONGEST).collect()
 }
 
 /// x, y and z as far as the row has them.

@@ -1,34 +1,48 @@
-//! Least squares through the Gram matrix, assembled without touching the N × (L+1)² matrix.
+//! Least squares through the Gram matrix, which is never formed from the points.
 //!
-//! With the moments ρ_{LM} = Σᵢ Y_{LM}(pᵢ) up to degree 2L, the density ρ = Σ ρ_{LM} Y_{LM} has
+//! With the moments ρ_{LM} = Σᵢ wᵢ Y_{LM}(pᵢ) up to degree 2L, the density ρ = Σ ρ_{LM} Y_{LM} has
 //! the same inner products with products of two harmonics of degree ≤ L as the samples have:
-//! (YᵀY)_{ab} = ∫ ρ Y_a Y_b, exactly, and Gauss–Legendre rings exact to degree 4L integrate it.
-//! One pass over the points; nothing after it depends on their number.
+//! (YᵀWY)_{ab} = ∫ ρ Y_a Y_b, exactly, and Gauss–Legendre rings exact to degree 4L integrate it.
+//! One pass over the points; nothing after it depends on their number. Applied as multiplication
+//! by ρ on the grid it serves conjugate gradients; assembled ring by ring it can be factored.
 
-use faer::linalg::matmul::matmul;
-use faer::linalg::solvers::{Llt, Solve};
-use faer::{Accum, Mat, MatRef, Par, Side};
+use std::sync::OnceLock;
 
-use super::penalty::{golden_section, roughness};
+use faer::Mat;
+
+use super::conjugate::{self, Limits, Outcome, dot};
+use super::dense::{Dense, Factor};
+use super::likelihood;
+use super::operator::Multiplier;
 use super::{Penalty, RegressionError, Samples};
-use crate::batch;
 use crate::coefficients::Coefficients;
-use crate::grid::gauss_legendre;
+use crate::direction::Direction;
 use crate::index;
-use crate::legendre::Legendre;
+use crate::{batch, scattered::Scattered};
+
+/// Up to here a dense factor costs less than iterating.
+const SMALL_DEGREE: usize = 16;
+/// Up to here a dense factor is affordable where the iteration fails.
+const DENSE_DEGREE: usize = 80;
 
 /// The normal equations of a set of samples at one degree.
 pub struct Gram {
     degree: usize,
     samples: usize,
-    /// YᵀY in [`Order`], lower triangle.
-    matrix: Mat<f64>,
-    /// Yᵀ(f − mean), position l²+l+m.
-    right: Coefficients,
-    /// Σ (fᵢ − mean)².
+    weights: Option<Vec<f64>>,
+    points: Points,
+    density: Coefficients,
+    /// YᵀWY as multiplication by ρ.
+    operator: Multiplier,
+    /// Multiplication by 1/ρ̃, with ρ̃ smooth and positive.
+    inverse: Multiplier,
+    /// YᵀW(f − mean), position l²+l+m.
+    right: Vec<f64>,
+    /// Σ w (fᵢ − mean)².
     sum_squares: f64,
+    /// Weighted mean of the values.
     mean: f64,
-    order: Order,
+    dense: OnceLock<Dense>,
 }
 
 /// A solved system: what [`Gram::solve`] found, and how well posed it was.
@@ -36,139 +50,313 @@ pub struct Gram {
 pub struct Solution {
     /// β.
     pub coefficients: Coefficients,
-    /// Condition number of [Y; √penalty], to about ten per cent.
+    /// Condition number of [√W Y; √penalty], to about ten per cent.
     pub condition: f64,
 }
 
+/// How normal equations are solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    /// Cholesky for degrees up to 16; above, conjugate gradients, and Cholesky if they fail.
+    Automatic,
+    /// Preconditioned conjugate gradients: O(L³) an iteration, no matrix.
+    Conjugate,
+    /// The dense factor: O(L⁶) flops, 16 (L+1)⁴ bytes.
+    Cholesky,
+}
+
 impl Gram {
-    /// Assembles YᵀY and Yᵀf. About 16·N·L² + L⁵ flops and 8·(L+1)⁴ bytes (54 MB at L = 50).
+    /// The equations of unweighted samples. About 600 flops a point and 50 L³.
     pub fn new(samples: Samples, degree: usize) -> Result<Self, RegressionError> {
+        Self::build(samples, None, degree)
+    }
+
+    /// The equations of samples with weights ≥ 0, one a sample: Σ wᵢ (h(pᵢ) − fᵢ)².
+    pub fn weighted(
+        samples: Samples,
+        weights: &[f64],
+        degree: usize,
+    ) -> Result<Self, RegressionError> {
+        Self::build(samples, Some(weights.to_vec()), degree)
+    }
+
+    fn build(
+        samples: Samples,
+        weights: Option<Vec<f64>>,
+        degree: usize,
+    ) -> Result<Self, RegressionError> {
         samples.check()?;
         let count = samples.values.len();
-        let mean = samples.values.iter().sum::<f64>() / count as f64;
+        let ones = vec![1.0; if weights.is_none() { count } else { 0 }];
+        let w = weights.as_deref().unwrap_or(&ones);
+        check_weights(w, count)?;
+        let mean = dot(w, samples.values) / w.iter().sum::<f64>();
         let centred: Vec<f64> = samples.values.iter().map(|f| f - mean).collect();
-        let density = batch::moments(samples.directions, &vec![1.0; count], 2 * degree);
-        let order = Order::new(degree);
+        let weighted: Vec<f64> = centred.iter().zip(w).map(|(f, w)| f * w).collect();
+        let points = Points::new(samples.directions, degree);
+        let density = points.moments(samples.directions, w, 2 * degree);
+        let right = points.moments(samples.directions, &weighted, degree);
         Ok(Self {
             degree,
-            samples: count,
-            matrix: assemble(&density, degree, &order),
-            right: batch::moments(samples.directions, &centred, degree),
-            sum_squares: centred.iter().map(|f| f * f).sum(),
+            samples: w.iter().filter(|&&w| w > 0.0).count(),
+            operator: Multiplier::new(degree, 2 * degree + 1, 4 * degree + 1, &density, |g| g),
+            inverse: inverse_density(&density, degree),
+            right: right.as_slice().to_vec(),
+            sum_squares: dot(&centred, &weighted),
             mean,
-            order,
+            points,
+            density,
+            weights,
+            dense: OnceLock::new(),
         })
     }
 
-    /// argmin Σᵢ (h(pᵢ) − fᵢ)² + penalty, with one step of refinement on the true residual.
+    /// L.
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// argmin Σᵢ wᵢ (h(pᵢ) − fᵢ)² + penalty, refined with the true residual.
     ///
-    /// `samples` are those the system was assembled from. Costs (L+1)⁶/3 flops.
+    /// `samples` are those the system was assembled from.
     pub fn solve(&self, samples: Samples, penalty: Penalty) -> Result<Solution, RegressionError> {
+        self.solve_by(samples, penalty, Method::Automatic)
+    }
+
+    /// [`Gram::solve`] by a given method.
+    pub fn solve_by(
+        &self,
+        samples: Samples,
+        penalty: Penalty,
+        method: Method,
+    ) -> Result<Solution, RegressionError> {
+        penalty.check()?;
+        let unknowns = index::count(self.degree);
+        if penalty.lambda == 0.0 && self.samples < unknowns {
+            return Err(self.rank_deficient());
+        }
+        let dense_first = match method {
+            Method::Automatic => self.degree <= SMALL_DEGREE,
+            Method::Conjugate => false,
+            Method::Cholesky => true,
+        };
+        if !dense_first {
+            match self.refine(samples, penalty, &|right, share| {
+                self.iterate(penalty, right, None, Limits::to(share, unknowns))
+                    .map(|outcome| outcome.solution)
+            }) {
+                Ok(beta) => {
+                    let condition = self.condition(penalty);
+                    return Ok(self.solution(beta, condition));
+                }
+                Err(failed) if method == Method::Conjugate || self.degree > DENSE_DEGREE => {
+                    return Err(failed);
+                }
+                Err(_) => {}
+            }
+        }
         let factor = self.factor(penalty)?;
-        let mut beta = self.order.solve(&factor, &self.right);
-        let fitted = batch::evaluate(&beta, samples.directions);
-        let residual: Vec<f64> = samples
+        let beta = self.refine(samples, penalty, &|right, _| Ok(factor.solve(right)))?;
+        let condition = self.condition_by(penalty, |right| factor.solve(right));
+        if beta.iter().any(|b| !b.is_finite()) {
+            return Err(self.rank_deficient());
+        }
+        Ok(self.solution(beta, condition))
+    }
+
+    /// (YᵀWY + penalty)⁻¹, rows and columns at positions l²+l+m: the covariance of β for samples
+    /// whose noise has variance 1/wᵢ; scale by the noise's variance.
+    ///
+    /// From the dense factor: (L+1)⁶ flops and 24 (L+1)⁴ bytes.
+    pub fn covariance(&self, penalty: Penalty) -> Result<Mat<f64>, RegressionError> {
+        penalty.check()?;
+        Ok(self.factor(penalty)?.inverse())
+    }
+
+    /// The λ that maximises the restricted marginal likelihood of the samples (REML).
+    ///
+    /// Model: fᵢ = h(pᵢ) + noise of variance σ²/wᵢ, β_{lm} ~ N(0, σ² / (λ(l(l+1))^power)) for l ≥ 1,
+    /// flat in the constant. Its derivative vanishes where
+    /// (N−1) λ βᵀDβ / RSS = Σ over l ≥ 1 of the degrees of freedom, with RSS the penalised residual;
+    /// the root is found by secant steps in log λ within λ/N ∈ [1e−14, 1] to a twentieth of a decade,
+    /// the degrees of freedom by Hutchinson's estimate with fixed signs.
+    pub fn choose_penalty(&self, power: i32) -> Result<Penalty, RegressionError> {
+        likelihood::choose(self, power)
+    }
+
+    /// Number of samples that count.
+    pub(super) fn samples(&self) -> usize {
+        self.samples
+    }
+
+    pub(super) fn right(&self) -> &[f64] {
+        &self.right
+    }
+
+    pub(super) fn sum_squares(&self) -> f64 {
+        self.sum_squares
+    }
+
+    /// M⁻¹ b to the limits, by whatever serves.
+    pub(super) fn solve_roughly(
+        &self,
+        penalty: Penalty,
+        rights: &[(&[f64], Option<&[f64]>, Limits)],
+    ) -> Result<Vec<Outcome>, RegressionError> {
+        if self.degree > SMALL_DEGREE && self.dense.get().is_none() {
+            use rayon::prelude::*;
+            let found: Result<Vec<Outcome>, RegressionError> = rights
+                .par_iter()
+                .map(|&(right, start, limits)| self.iterate(penalty, right, start, limits))
+                .collect();
+            if found.is_ok() || self.degree > DENSE_DEGREE {
+                return found;
+            }
+        }
+        let factor = self.factor(penalty)?;
+        Ok(rights
+            .iter()
+            .map(|(right, ..)| {
+                let solution = factor.solve(right);
+                Outcome {
+                    quadratic: -dot(right, &solution),
+                    solution,
+                    iterations: 0,
+                    converged: true,
+                }
+            })
+            .collect())
+    }
+
+    /// Conjugate gradients on YᵀWY + penalty.
+    fn iterate(
+        &self,
+        penalty: Penalty,
+        right: &[f64],
+        start: Option<&[f64]>,
+        limits: Limits,
+    ) -> Result<Outcome, RegressionError> {
+        let share = |l: usize| {
+            let mean_density = self.density.as_slice()[0] / (4.0 * std::f64::consts::PI).sqrt();
+            1.0 / (1.0 + penalty.weight(l) / mean_density)
+        };
+        let mean_density = self.density.as_slice()[0] / (4.0 * std::f64::consts::PI).sqrt();
+        let shares: Vec<f64> = (0..=self.degree).map(share).collect();
+        let scaled = |x: &[f64]| -> Vec<f64> {
+            x.iter()
+                .enumerate()
+                .map(|(i, x)| x * shares[index::degree_order(i).0])
+                .collect()
+        };
+        // (ρ + λd)⁻¹ ≈ p ρ̃⁻¹ p + (1−p) p / ρ̄ with p = 1/(1 + λd/ρ̄): exact where ρ is constant.
+        let precondition = |r: &[f64]| {
+            let inner = self.inverse.apply(&scaled(r));
+            let mut out = scaled(&inner);
+            for (i, (out, r)) in out.iter_mut().zip(r).enumerate() {
+                let p = shares[index::degree_order(i).0];
+                *out += (1.0 - p) * p / mean_density * r;
+            }
+            out
+        };
+        let apply = |x: &[f64]| self.apply(penalty, x);
+        let outcome = conjugate::solve(apply, precondition, right, start, limits);
+        if outcome.converged {
+            Ok(outcome)
+        } else {
+            Err(RegressionError::NotConverged {
+                degree: self.degree,
+                iterations: outcome.iterations,
+            })
+        }
+    }
+
+    /// (YᵀWY + penalty) x.
+    fn apply(&self, penalty: Penalty, x: &[f64]) -> Vec<f64> {
+        let mut image = self.operator.apply(x);
+        if penalty.lambda > 0.0 {
+            add_penalty(penalty, x, &mut image);
+        }
+        image
+    }
+
+    /// Solves, then corrects by what the samples themselves say about the error.
+    fn refine(
+        &self,
+        samples: Samples,
+        penalty: Penalty,
+        solve: &dyn Fn(&[f64], f64) -> Result<Vec<f64>, RegressionError>,
+    ) -> Result<Vec<f64>, RegressionError> {
+        let mut beta = solve(&self.right, 1e-18)?;
+        let fitted = self.points.evaluate(samples.directions, &beta);
+        let mut residual: Vec<f64> = samples
             .values
             .iter()
             .zip(&fitted)
             .map(|(f, h)| f - self.mean - h)
             .collect();
-        let mut gradient = batch::moments(samples.directions, &residual, self.degree);
-        for (i, g) in gradient.as_mut_slice().iter_mut().enumerate() {
-            *g -= penalty.weight(index::degree_order(i).0) * beta.as_slice()[i];
+        if let Some(weights) = &self.weights {
+            for (r, w) in residual.iter_mut().zip(weights) {
+                *r *= w;
+            }
         }
-        let step = self.order.solve(&factor, &gradient);
-        beta = Coefficients::combination([(1.0, &beta), (1.0, &step)]);
-        beta.as_mut_slice()[0] += self.mean * (4.0 * std::f64::consts::PI).sqrt();
-        if beta.as_slice().iter().any(|b| !b.is_finite()) {
-            return Err(self.rank_deficient());
+        let gradient = self.points.moments(samples.directions, &residual, self.degree);
+        let mut gradient = gradient.as_slice().to_vec();
+        for (i, g) in gradient.iter_mut().enumerate() {
+            *g -= penalty.weight(index::degree_order(i).0) * beta[i];
         }
-        Ok(Solution {
-            condition: self.condition(penalty, &factor),
-            coefficients: beta,
-        })
+        for (b, step) in beta.iter_mut().zip(solve(&gradient, 1e-10)?) {
+            *b += step;
+        }
+        Ok(beta)
     }
 
-    /// The λ that maximises the restricted marginal likelihood of the samples (REML).
-    ///
-    /// Model: fᵢ = h(pᵢ) + noise of variance σ², β_{lm} ~ N(0, σ² / (λ(l(l+1))^power)) for l ≥ 1,
-    /// flat in the constant. Minimises (N−1) log RSS(λ) + log|YᵀY + λD| − ((L+1)²−1) log λ by
-    /// golden section in log₁₀(λ/N) ∈ [−14, 0] to a fifth of a decade; 11 factorisations.
-    pub fn choose_penalty(&self, power: i32) -> Result<Penalty, RegressionError> {
-        let per_sample = self.samples as f64;
-        let at = |log: f64| Penalty {
-            lambda: per_sample * 10.0_f64.powf(log),
-            power,
-        };
-        let best = golden_section((-14.0, 0.0), 0.2, |log| self.marginal_cost(at(log)))?;
-        Ok(at(best))
-    }
-
-    fn marginal_cost(&self, penalty: Penalty) -> Result<f64, RegressionError> {
-        let factor = match self.factor(penalty) {
-            Ok(factor) => factor,
-            // Too little penalty to be positive definite in floating point: never the best.
-            Err(RegressionError::RankDeficient { .. }) => return Ok(f64::INFINITY),
-            Err(other) => return Err(other),
-        };
-        let beta = self.order.solve(&factor, &self.right);
-        let explained: f64 = beta
-            .as_slice()
-            .iter()
-            .zip(self.right.as_slice())
-            .map(|(b, r)| b * r)
-            .sum();
-        // Exactly fitted data leave only rounding.
-        let rss = (self.sum_squares - explained).max(1e-15 * self.sum_squares);
-        let factor = factor.L();
-        let log_det: f64 = (0..factor.nrows()).map(|i| factor[(i, i)].ln()).sum();
-        let penalised = index::count(self.degree) as f64 - 1.0;
-        Ok(
-            (self.samples.max(2) as f64 - 1.0) * rss.max(f64::MIN_POSITIVE).ln() + 2.0 * log_det
-                - penalised * penalty.lambda.ln(),
-        )
-    }
-
-    fn factor(&self, penalty: Penalty) -> Result<Llt<f64>, RegressionError> {
-        if !(penalty.lambda >= 0.0 && penalty.lambda.is_finite()) {
-            return Err(RegressionError::Penalty {
-                lambda: penalty.lambda,
-            });
-        }
-        let mut matrix = self.matrix.clone();
-        for (row, &position) in self.order.positions.iter().enumerate() {
-            let l = index::degree_order(position).0;
-            matrix[(row, row)] += penalty.lambda * roughness(l, penalty.power);
-        }
-        let factor = matrix.llt(Side::Lower).map_err(|_| self.rank_deficient())?;
-        let lower = factor.L();
-        let pivots = (0..lower.nrows()).map(|i| lower[(i, i)]);
-        let (least, most) = pivots.fold((f64::INFINITY, 0.0_f64), |(a, b), d| (a.min(d), b.max(d)));
+    fn factor(&self, penalty: Penalty) -> Result<Factor<'_>, RegressionError> {
+        let dense = self
+            .dense
+            .get_or_init(|| Dense::new(&self.density, self.degree));
+        let factor = dense.factor(penalty).ok_or_else(|| self.rank_deficient())?;
         // The pivots of a Gram matrix are those of a triangle R; below √ε they are rounding.
-        if least > most * 1e-8 || penalty.lambda > 0.0 {
+        if factor.pivot_ratio < 1e8 || penalty.lambda > 0.0 {
             Ok(factor)
         } else {
             Err(self.rank_deficient())
         }
     }
 
-    /// √(largest / smallest eigenvalue) of YᵀY + penalty, by power and inverse iteration.
-    fn condition(&self, penalty: Penalty, factor: &Llt<f64>) -> f64 {
-        let size = self.order.positions.len();
-        let start = || Mat::from_fn(size, 1, |i, _| 1.0 + 0.5 * (i as f64 * 1.618).sin());
-        let (mut high, mut low) = (start(), start());
-        let (mut largest, mut smallest) = (1.0, 1.0);
-        for _ in 0..8 {
-            let lower = factor.L();
-            high = lower * (lower.transpose() * &high);
-            largest = high.norm_l2();
-            high /= faer::Scale(largest);
-            low = factor.solve(&low);
-            smallest = 1.0 / low.norm_l2();
-            low *= faer::Scale(smallest);
+    fn solution(&self, beta: Vec<f64>, condition: f64) -> Solution {
+        let mut coefficients = Coefficients::zeros(self.degree);
+        coefficients.as_mut_slice().copy_from_slice(&beta);
+        coefficients.as_mut_slice()[0] += self.mean * (4.0 * std::f64::consts::PI).sqrt();
+        Solution {
+            coefficients,
+            condition,
         }
-        debug_assert!(penalty.lambda >= 0.0);
-        (largest / smallest).sqrt()
+    }
+
+    fn condition(&self, penalty: Penalty) -> f64 {
+        let limits = Limits {
+            iterations: 10 * index::count(self.degree),
+            share: 1e-2,
+            offset: 0.0,
+            floor: 0.0,
+        };
+        self.condition_by(penalty, |right| {
+            match self.iterate(penalty, right, None, limits) {
+                Ok(outcome) => outcome.solution,
+                Err(_) => right.to_vec(),
+            }
+        })
+    }
+
+    /// √(largest / smallest eigenvalue) of YᵀWY + penalty, by power and inverse iteration.
+    fn condition_by(&self, penalty: Penalty, solve: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
+        let size = index::count(self.degree);
+        let start: Vec<f64> = (0..size)
+            .map(|i| 1.0 + 0.5 * (i as f64 * 1.618).sin())
+            .collect();
+        let largest = eigenvalue(start.clone(), 12, |x| self.apply(penalty, x));
+        let inverse = eigenvalue(start, 6, solve);
+        (largest * inverse).sqrt()
     }
 
     fn rank_deficient(&self) -> RegressionError {
@@ -190,139 +378,97 @@ pub fn fit(
     Ok(solution.coefficients)
 }
 
-/// Unknowns by order: for each m the cosines l = m … L, then, for m > 0, the sines.
-struct Order {
-    /// Position l²+l+m of every row.
-    positions: Vec<usize>,
-    /// First row of order m's cosines; the sines follow after L−m+1 rows.
-    starts: Vec<usize>,
+/// Sums over the points: by a non-uniform Fourier transform where it pays.
+enum Points {
+    Few,
+    Many(Scattered),
 }
 
-impl Order {
-    fn new(degree: usize) -> Self {
-        let mut positions = Vec::with_capacity(index::count(degree));
-        let mut starts = Vec::with_capacity(degree + 1);
-        for m in 0..=degree {
-            starts.push(positions.len());
-            positions.extend((m..=degree).map(|l| l * l + l + m));
-            if m > 0 {
-                positions.extend((m..=degree).map(|l| l * l + l - m));
-            }
-        }
-        Self { positions, starts }
-    }
-
-    fn solve(&self, factor: &Llt<f64>, right: &Coefficients) -> Coefficients {
-        let size = self.positions.len();
-        let mut x = Mat::from_fn(size, 1, |i, _| right.as_slice()[self.positions[i]]);
-        factor.solve_in_place(&mut x);
-        let mut out = Coefficients::zeros(right.degree());
-        for (row, &position) in self.positions.iter().enumerate() {
-            out.as_mut_slice()[position] = x[(row, 0)];
-        }
-        out
-    }
-}
-
-/// ∫ρ cos kφ dφ and ∫ρ sin kφ dφ on every ring, times the ring's weight; index k · rings + j.
-struct RingMoments {
-    rings: usize,
-    cos: Vec<f64>,
-    sin: Vec<f64>,
-}
-
-impl RingMoments {
-    fn new(density: &Coefficients, nodes: &[f64], weights: &[f64]) -> Self {
-        let degree = density.degree();
-        let legendre = Legendre::new(degree);
-        let rings = nodes.len();
-        let mut cos = vec![0.0; (degree + 1) * rings];
-        let mut sin = vec![0.0; (degree + 1) * rings];
-        let mut column = vec![0.0; degree + 1];
-        for (j, (&z, &weight)) in nodes.iter().zip(weights).enumerate() {
-            let s = ((1.0 - z) * (1.0 + z)).sqrt();
-            let mut power = weight * std::f64::consts::PI;
-            for k in 0..=degree {
-                let column = &mut column[..=degree - k];
-                legendre.column(k, z, column);
-                let (mut even, mut odd) = (0.0, 0.0);
-                for (l, pi) in (k..).zip(column.iter()) {
-                    even += pi * density.as_slice()[l * l + l + k];
-                    odd += pi * density.as_slice()[l * l + l - k];
-                }
-                cos[k * rings + j] = even * power * if k == 0 { 2.0 } else { 1.0 };
-                sin[k * rings + j] = if k == 0 { 0.0 } else { odd * power };
-                power *= s;
-            }
-        }
-        Self { rings, cos, sin }
-    }
-
-    /// Ring weights of ∫ρ T_m T_n dφ for the four products of {cos, sin} m and {cos, sin} n, m ≥ n.
-    fn products(&self, m: usize, n: usize, j: usize) -> [f64; 4] {
-        let at = |list: &[f64], k: usize| list[k * self.rings + j];
-        let (sum, difference) = (m + n, m - n);
-        let (c_sum, c_diff) = (at(&self.cos, sum), at(&self.cos, difference));
-        let (s_sum, s_diff) = (at(&self.sin, sum), at(&self.sin, difference));
-        [
-            0.5 * (c_diff + c_sum),
-            0.5 * (s_sum - s_diff),
-            0.5 * (s_sum + s_diff),
-            0.5 * (c_diff - c_sum),
-        ]
-    }
-}
-
-/// The lower triangle of YᵀY in [`Order`], ring by ring: block (m, n) is P_mᵀ diag(w) P_n.
-fn assemble(density: &Coefficients, degree: usize, order: &Order) -> Mat<f64> {
-    let (nodes, weights) = gauss_legendre(2 * degree + 1);
-    let rings = nodes.len();
-    let moments = RingMoments::new(density, &nodes, &weights);
-    let tables = legendre_tables(degree, &nodes);
-    let size = order.positions.len();
-    let mut matrix = Mat::zeros(size, size);
-    let mut scaled = Mat::zeros(rings, degree + 1);
-    for n in 0..=degree {
-        for m in n..=degree {
-            let (rows, columns) = (degree - m + 1, degree - n + 1);
-            let products: Vec<[f64; 4]> = (0..rings).map(|j| moments.products(m, n, j)).collect();
-            for (k, (sin_m, sin_n)) in [(0, 0), (0, 1), (1, 0), (1, 1)].into_iter().enumerate() {
-                if (sin_m == 1 && m == 0) || (sin_n == 1 && n == 0) {
-                    continue;
-                }
-                for l in 0..columns {
-                    for j in 0..rings {
-                        scaled[(j, l)] = tables[n][(j, l)] * products[j][k];
-                    }
-                }
-                let row = order.starts[m] + sin_m * rows;
-                let column = order.starts[n] + sin_n * columns;
-                let block = matrix.as_mut().submatrix_mut(row, column, rows, columns);
-                let right: MatRef<f64> = scaled.as_ref().subcols(0, columns);
-                let left = tables[m].transpose();
-                matmul(block, Accum::Replace, left, right, 1.0, Par::Seq);
-            }
+impl Points {
+    fn new(directions: &[Direction], degree: usize) -> Self {
+        // A point costs the window's squares, or every harmonic; the grid costs L³ once.
+        if directions.len() > 400 && degree > 8 {
+            Self::Many(Scattered::new(directions))
+        } else {
+            Self::Few
         }
     }
-    matrix
+
+    fn moments(&self, directions: &[Direction], weights: &[f64], degree: usize) -> Coefficients {
+        match self {
+            Self::Few => batch::moments(directions, weights, degree),
+            Self::Many(points) => points.moments(weights, degree),
+        }
+    }
+
+    fn evaluate(&self, directions: &[Direction], beta: &[f64]) -> Vec<f64> {
+        let mut coefficients = Coefficients::zeros(beta.len().isqrt() - 1);
+        coefficients.as_mut_slice().copy_from_slice(beta);
+        match self {
+            Self::Few => batch::evaluate(&coefficients, directions),
+            Self::Many(points) => points.evaluate(&coefficients),
+        }
+    }
 }
 
-/// P̄_l^m at every ring, one rings × (L−m+1) matrix an order.
-fn legendre_tables(degree: usize, nodes: &[f64]) -> Vec<Mat<f64>> {
-    let legendre = Legendre::new(degree);
-    let mut column = vec![0.0; degree + 1];
-    (0..=degree)
-        .map(|m| {
-            let mut table = Mat::zeros(nodes.len(), degree - m + 1);
-            for (j, &z) in nodes.iter().enumerate() {
-                let power = ((1.0 - z) * (1.0 + z)).sqrt().powi(m as i32);
-                let column = &mut column[..=degree - m];
-                legendre.column(m, z, column);
-                for (l, pi) in column.iter().enumerate() {
-                    table[(j, l)] = pi * power;
-                }
-            }
-            table
-        })
-        .collect()
+fn check_weights(weights: &[f64], samples: usize) -> Result<(), RegressionError> {
+    if weights.len() != samples {
+        return Err(RegressionError::Weight {
+            index: samples,
+            value: f64::NAN,
+        });
+    }
+    let bad = |w: &f64| !(*w >= 0.0 && w.is_finite());
+    if let Some(index) = weights.iter().position(bad) {
+        return Err(RegressionError::Weight {
+            index,
+            value: weights[index],
+        });
+    }
+    if weights.iter().all(|&w| w == 0.0) {
+        return Err(RegressionError::Weight {
+            index: 0,
+            value: 0.0,
+        });
+    }
+    Ok(())
+}
+
+/// Multiplication by 1/ρ̃: ρ smoothed over about three wave lengths and kept above 2 % of its mean.
+fn inverse_density(density: &Coefficients, degree: usize) -> Multiplier {
+    let mut smooth = density.with_degree(degree);
+    let width = 0.35 * degree.max(1) as f64;
+    for (i, c) in smooth.as_mut_slice().iter_mut().enumerate() {
+        let (l, _) = index::degree_order(i);
+        *c *= (-((l * (l + 1)) as f64) / (width * width)).exp();
+    }
+    let mean = density.as_slice()[0] / (4.0 * std::f64::consts::PI).sqrt();
+    Multiplier::new(degree, degree + 1, 2 * degree + 1, &smooth, |g| {
+        1.0 / g.max(0.02 * mean)
+    })
+}
+
+fn add_penalty(penalty: Penalty, x: &[f64], image: &mut [f64]) {
+    let degree = x.len().isqrt() - 1;
+    for l in 1..=degree {
+        let weight = penalty.weight(l);
+        for i in l * l..(l + 1) * (l + 1) {
+            image[i] += weight * x[i];
+        }
+    }
+}
+
+/// Largest eigenvalue of a positive operator by power iteration, from below.
+fn eigenvalue(mut x: Vec<f64>, steps: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
+    let mut value = 0.0;
+    for _ in 0..steps {
+        let length = dot(&x, &x).sqrt();
+        for x in &mut x {
+            *x /= length;
+        }
+        let image = apply(&x);
+        value = dot(&image, &image).sqrt();
+        x = image;
+    }
+    value
 }

@@ -1,0 +1,149 @@
+//! Grasp quality: contacts to wrenches to the largest ball, closed and random grasps.
+//!
+//! Random grasps have contacts uniform in the ball of radius 2, inward normals uniform on the sphere
+//! and the centre at the origin. Every measurement walks through many grasps and divides by nothing:
+//! read the times as microseconds per 100 grasps.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use grasp::{
+    ActiveFacet, Contact, Convention, Edges, FrameRule, Gradient, Setup, Workspace, epsilon,
+    epsilon_linf, facet_gradient, margin, near_active_facets, volume,
+};
+use nalgebra::{Point3, Unit, Vector3};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::hint::black_box;
+
+const GRASPS: usize = 100;
+
+fn in_ball(rng: &mut ChaCha8Rng) -> Vector3<f64> {
+    loop {
+        let v = Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0));
+        if v.norm_squared() <= 1.0 && v.norm_squared() > 1e-6 {
+            return v;
+        }
+    }
+}
+
+fn random_grasp(rng: &mut ChaCha8Rng) -> Vec<Contact> {
+    (0..3)
+        .map(|_| Contact {
+            position: Point3::from(in_ball(rng) * 2.0),
+            inward_normal: Unit::new_normalize(in_ball(rng)),
+        })
+        .collect()
+}
+
+fn convention(edges: Edges) -> Convention {
+    Convention {
+        name: "unit".to_owned(),
+        edge_norm: grasp::EdgeNorm::UnitNormalComponent,
+        torque_length: grasp::TorqueLength::Metres(1.0),
+        centre: grasp::CentreRule::Given,
+        friction: 1.0,
+        edges,
+        not_closed: 0.0,
+    }
+}
+
+/// Random grasps; with `closed`, those that are closed at eight edges.
+fn grasps(closed: bool) -> Vec<Vec<Contact>> {
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let eight = convention(Edges::Polygon(8));
+    let mut workspace = Workspace::new();
+    let mut out = Vec::new();
+    while out.len() < GRASPS {
+        let contacts = random_grasp(&mut rng);
+        let found = epsilon(&contacts, &Point3::origin(), &eight, &mut workspace);
+        if !closed || found.is_ok_and(|e| e.closed) {
+            out.push(contacts);
+        }
+    }
+    out
+}
+
+fn quality(c: &mut Criterion, name: &str, grasps: &[Vec<Contact>], edges: Edges) {
+    let convention = convention(edges);
+    let mut workspace = Workspace::new();
+    c.bench_function(name, |b| {
+        b.iter(|| {
+            for contacts in grasps {
+                let found = epsilon(contacts, &Point3::origin(), &convention, &mut workspace);
+                black_box(found.is_ok());
+            }
+        });
+    });
+}
+
+fn epsilons(c: &mut Criterion) {
+    let closed = grasps(true);
+    let random = grasps(false);
+    for edges in [4, 8, 10, 16] {
+        let name = format!("grasp/epsilon closed 3x{edges}, 100 grasps");
+        quality(c, &name, &closed, Edges::Polygon(edges));
+    }
+    let name = "grasp/epsilon random 3x8, 100 grasps";
+    quality(c, name, &random, Edges::Polygon(8));
+    for tolerance in [1e-2, 1e-3, 1e-4, 1e-6, 1e-9] {
+        let name = format!("grasp/epsilon closed round {tolerance:e}, 100 grasps");
+        quality(c, &name, &closed, Edges::Round { tolerance });
+    }
+}
+
+fn others(c: &mut Criterion) {
+    let closed = grasps(true);
+    let convention = convention(Edges::Polygon(8));
+    let centre = Point3::origin();
+    let setups: Vec<Setup<'_>> = closed
+        .iter()
+        .map(|contacts| Setup {
+            contacts,
+            centre: &centre,
+            convention: &convention,
+            fingers: &[],
+        })
+        .collect();
+    let mut workspace = Workspace::new();
+    let mut gradient = Gradient::default();
+    c.bench_function("grasp/margin and gradient 3x8, 100 grasps", |b| {
+        b.iter(|| {
+            for setup in &setups {
+                if let Ok(found) = margin(setup, &mut workspace) {
+                    let done =
+                        facet_gradient(setup, &found.facet, FrameRule::Tangent, &mut gradient);
+                    black_box(done.is_ok());
+                }
+            }
+        });
+    });
+    let mut facets: Vec<ActiveFacet> = Vec::new();
+    c.bench_function("grasp/near-active facets 3x8, band 0.01, 100 grasps", |b| {
+        b.iter(|| {
+            for setup in &setups {
+                let done = near_active_facets(setup, 0.01, &mut workspace, &mut facets);
+                black_box(done.is_ok());
+            }
+        });
+    });
+    c.bench_function("grasp/epsilon L-infinity 3x8, 100 grasps", |b| {
+        b.iter(|| {
+            for setup in &setups {
+                black_box(epsilon_linf(setup, &mut workspace).is_ok());
+            }
+        });
+    });
+    c.bench_function("grasp/full hull and volume 3x8, 10 grasps", |b| {
+        b.iter(|| {
+            for contacts in &closed[..10] {
+                black_box(volume(contacts, &centre, &convention).is_ok());
+            }
+        });
+    });
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().sample_size(10).warm_up_time(std::time::Duration::from_millis(500)).measurement_time(std::time::Duration::from_secs(2));
+    targets = epsilons, others
+}
+criterion_main!(benches);

@@ -1,0 +1,197 @@
+//! The library that grasps are transferred from: the twelve objects with their best hand grasps.
+
+use grasp::{Contact, Convention, Grasp};
+use hand::HandGrasp;
+use nalgebra::Point3;
+use record::{LibraryEntry, LibraryGrasp, LibraryRecord, ShapeRecord};
+use shape::FitSettings;
+
+use crate::error::ExperimentError;
+use crate::objects::{ObjectSource, Objects};
+use crate::paper;
+use crate::pipeline::{FittedObject, fit_all, synthesize};
+use crate::run::fit_settings;
+
+/// How a library is built.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LibrarySettings {
+    /// The seed of the scans and of the hand's poses.
+    pub seed: u64,
+    /// How scans become surfaces.
+    pub fit: FitSettings,
+    /// How grasps are ranked.
+    pub convention: Convention,
+    /// Hand poses around each object.
+    pub poses: usize,
+    /// Grasps kept of each object, at most.
+    pub grasps: usize,
+    /// Two grasps of one object are at least this far apart ([`separation`]).
+    pub separation: f64,
+}
+
+impl LibrarySettings {
+    /// The library under `fixtures/`, with grasps ranked under a convention.
+    pub fn standard(convention: Convention) -> Self {
+        Self {
+            seed: 2014,
+            fit: fit_settings(paper::DEGREE, None),
+            convention,
+            poses: paper::HAND_POSES,
+            grasps: 12,
+            separation: 0.25,
+        }
+    }
+}
+
+/// Fits S1 to S12 of the catalogue and keeps the best hand grasps on each, spread out.
+///
+/// Uses the current pool of threads; the result does not depend on their number. Errors: an object
+/// that cannot be fitted, and a hand or convention that cannot be used.
+pub fn build(settings: &LibrarySettings) -> Result<LibraryRecord, ExperimentError> {
+    let set = fit_all(
+        Objects::load(&ObjectSource::Builtin, settings.seed)?,
+        &settings.fit,
+    );
+    if !set.refused.is_empty() {
+        let reason = |r: &crate::objects::Refused| format!("\n  {}: {}", r.id, r.reason);
+        return Err(ExperimentError::TooFewObjects {
+            fitted: set.objects.len(),
+            given: set.objects.len() + set.refused.len(),
+            needed: paper::OBJECTS,
+            source_name: set.source.to_string(),
+            reasons: set.refused.iter().map(reason).collect(),
+        });
+    }
+    let hand = hand::schunk_sdh()?;
+    let mut entries = Vec::with_capacity(set.objects.len());
+    for fitted in &set.objects {
+        let found = synthesize(
+            fitted,
+            &hand,
+            &settings.convention,
+            settings.poses,
+            settings.seed,
+        )?;
+        entries.push(entry(fitted, &found.grasps, settings));
+    }
+    Ok(LibraryRecord {
+        seed: settings.seed,
+        convention: settings.convention.name.clone(),
+        hand: hand.name().to_owned(),
+        entries,
+    })
+}
+
+fn entry(fitted: &FittedObject, ranked: &[HandGrasp], settings: &LibrarySettings) -> LibraryEntry {
+    let name = &fitted.object.name;
+    let points = fitted.object.cloud.points().len();
+    let radius = fitted.shape().coefficients().get(0, 0) / (4.0 * std::f64::consts::PI).sqrt();
+    let spread = spread_out(ranked, radius, settings.separation, settings.grasps);
+    LibraryEntry {
+        id: fitted.id().to_owned(),
+        name: name.clone(),
+        shape: ShapeRecord::of_fit(name, &fitted.fit, points),
+        grasps: spread
+            .into_iter()
+            .map(LibraryGrasp::of_hand_grasp)
+            .collect(),
+    }
+}
+
+/// The first grasps of a ranked list, at most `count`, leaving out those that are nearer than
+/// `least` to one before.
+fn spread_out(ranked: &[HandGrasp], radius: f64, least: f64, count: usize) -> Vec<&HandGrasp> {
+    let mut kept: Vec<&HandGrasp> = Vec::with_capacity(count);
+    for grasp in ranked {
+        if kept.len() == count {
+            break;
+        }
+        let near = |other: &&HandGrasp| {
+            separation(&grasp.contacts, &other.contacts, radius).is_some_and(|d| d < least)
+        };
+        if !kept.iter().any(near) {
+            kept.push(grasp);
+        }
+    }
+    kept
+}
+
+/// d(g, g′) of Sec. III-C with lengths measured in `radius`, over all orders of the contacts: grasps
+/// that differ only in which finger is where are the same to an object. None for different counts.
+pub fn separation(a: &[Contact], b: &[Contact], radius: f64) -> Option<f64> {
+    let scaled = |order: &mut dyn Iterator<Item = &Contact>| Grasp {
+        contacts: order
+            .map(|c| Contact {
+                position: c.position / radius,
+                ..*c
+            })
+            .collect(),
+        centre: Point3::origin(),
+    };
+    let first = scaled(&mut a.iter());
+    let distances = orders(b.len())
+        .into_iter()
+        .map(|order| grasp::distance(&first, &scaled(&mut order.iter().map(|&k| &b[k]))))
+        .collect::<Result<Vec<f64>, _>>()
+        .ok()?;
+    distances.into_iter().min_by(f64::total_cmp)
+}
+
+/// All orders of 0 … count−1.
+fn orders(count: usize) -> Vec<Vec<usize>> {
+    let mut all = vec![Vec::new()];
+    for last in 0..count {
+        all = all
+            .into_iter()
+            .flat_map(|order: Vec<usize>| {
+                (0..=order.len()).map(move |place| {
+                    let mut longer = order.clone();
+                    longer.insert(place, last);
+                    longer
+                })
+            })
+            .collect();
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{UnitVector3, Vector3};
+
+    fn contact(x: f64, y: f64) -> Contact {
+        let position = Point3::new(x, y, 0.01);
+        Contact {
+            position,
+            inward_normal: UnitVector3::new_normalize(-position.coords),
+        }
+    }
+
+    #[test]
+    fn the_order_of_fingers_and_the_unit_of_length_do_not_matter() {
+        let a = [
+            contact(0.03, 0.0),
+            contact(0.0, 0.04),
+            contact(-0.03, -0.01),
+        ];
+        let turned = [a[2], a[0], a[1]];
+        assert_eq!(separation(&a, &turned, 0.04), Some(0.0));
+        let mut moved = a;
+        moved[1].position.z += 0.02;
+        assert!((separation(&a, &moved, 0.04).unwrap() - 0.5).abs() <= 1e-12);
+        assert_eq!(separation(&a, &a[..2], 0.04), None);
+        let mut tilted = a;
+        tilted[0].inward_normal = Vector3::z_axis();
+        assert!(separation(&a, &tilted, 0.04).unwrap() > 1.0);
+    }
+
+    #[test]
+    fn there_are_six_orders_of_three() {
+        let mut all = orders(3);
+        all.sort();
+        all.dedup();
+        assert_eq!(all.len(), 6);
+        assert_eq!(orders(0), [Vec::<usize>::new()]);
+    }
+}

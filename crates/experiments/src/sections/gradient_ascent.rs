@@ -1,0 +1,253 @@
+//! Fig. 7, Fig. 8 and Sec. IV-D: the paper's ascent from the grasps of G_i.
+
+use moduli::PaperAscent;
+use rayon::prelude::*;
+use serde::Serialize;
+use serde_json::json;
+use sph::Direction;
+
+use crate::error::ExperimentError;
+use crate::output::Findings;
+use crate::paper;
+use crate::pipeline::{FittedObject, FittedSet, best_grasps, fitted_objects};
+use crate::run::Run;
+use crate::statistics::{mean, share, summary};
+use crate::table::{Table, number, per_cent};
+
+/// What is computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plan {
+    /// Hand poses from which G_i is taken.
+    pub poses: usize,
+    /// Grasps of G_i that climb.
+    pub grasps: usize,
+    /// The ascent.
+    pub ascent: PaperAscent,
+}
+
+impl Plan {
+    /// The plan of a run.
+    pub fn of(run: &Run) -> Self {
+        Self {
+            poses: run.scale.pick(150, paper::HAND_POSES),
+            grasps: run.scale.pick(4, paper::BEST_GRASPS),
+            ascent: paper_ascent(run.scale.pick(200, paper::ASCENT_STEPS)),
+        }
+    }
+}
+
+/// The paper's ascent with some number of steps.
+pub fn paper_ascent(steps: usize) -> PaperAscent {
+    PaperAscent {
+        steps,
+        delta: paper::DIFFERENCE_STEP,
+        rate: paper::ASCENT_RATE,
+    }
+}
+
+/// One ascent.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Climb {
+    /// Q at the start.
+    pub initial: f64,
+    /// Q at the end.
+    pub last: f64,
+    /// The largest Q on the way.
+    pub highest: f64,
+    /// Largest angle between where a contact began and where it ended, radians.
+    pub moved_rad: f64,
+}
+
+/// The ascents on one object.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ObjectClimbs {
+    /// The object.
+    pub id: String,
+    /// Its ascents, by rank of the start.
+    pub climbs: Vec<Climb>,
+}
+
+/// All ascents in short.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Overall {
+    /// Ascents.
+    pub climbs: usize,
+    /// Share that ended higher than they began.
+    pub share_improved: Option<f64>,
+    /// Share that ended lower.
+    pub share_worsened: Option<f64>,
+    /// Mean of Q at the starts.
+    pub mean_initial: Option<f64>,
+    /// Mean of Q at the ends.
+    pub mean_final: Option<f64>,
+    /// Mean change of Q.
+    pub mean_change: Option<f64>,
+    /// Mean of Q lost between the highest state and the end: what the fixed step throws away.
+    pub mean_lost_from_highest: Option<f64>,
+}
+
+/// Runs the section.
+pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
+    let plan = Plan::of(run);
+    let set = fitted_objects(run, None, 1)?;
+    let ours = measure(run, &plan, &set)?;
+    let all: Vec<Climb> = ours.iter().flat_map(|o| o.climbs.iter().copied()).collect();
+    let overall = overall(&all);
+    Ok(Findings {
+        objects: set.describe(),
+        paper: json!({
+            "poses": paper::HAND_POSES,
+            "grasps_per_object": paper::BEST_GRASPS,
+            "steps": paper::ASCENT_STEPS,
+            "delta": paper::DIFFERENCE_STEP,
+            "rate": paper::ASCENT_RATE,
+            "examples_initial_final": paper::ASCENT_EXAMPLES,
+            "finding": "quality typically improves significantly; some ascents do not converge and end worse",
+        }),
+        table: table(&plan, &ours, &overall),
+        ours: json!({
+            "poses": plan.poses,
+            "grasps_per_object": plan.grasps,
+            "steps": plan.ascent.steps,
+            "overall": overall,
+            "largest_improvements_initial_final": examples(&all),
+            "by_object": ours,
+        }),
+    })
+}
+
+/// Climbs from the best hand grasps of every object.
+pub fn measure(
+    run: &Run,
+    plan: &Plan,
+    set: &FittedSet,
+) -> Result<Vec<ObjectClimbs>, ExperimentError> {
+    let grasps = best_grasps(run, set, plan.poses, plan.grasps)?;
+    run.say(&format!(
+        "{} ascents of {} steps",
+        grasps.iter().map(Vec::len).sum::<usize>(),
+        plan.ascent.steps
+    ));
+    set.objects
+        .par_iter()
+        .zip(&grasps)
+        .map(|(fitted, grasps)| {
+            let climbs = grasps
+                .par_iter()
+                .map(|grasp| climb(run, plan, fitted, &grasp.directions))
+                .collect::<Result<_, _>>()?;
+            Ok(ObjectClimbs {
+                id: fitted.id().to_owned(),
+                climbs,
+            })
+        })
+        .collect()
+}
+
+fn climb(
+    run: &Run,
+    plan: &Plan,
+    fitted: &FittedObject,
+    start: &[Direction],
+) -> Result<Climb, ExperimentError> {
+    let mut objective = fitted.objective(&run.convention);
+    let mut highest = 0.0_f64;
+    let ascent = plan
+        .ascent
+        .climb(fitted.shape(), start, &mut objective, |step| {
+            highest = highest.max(step.quality);
+        })?;
+    let moved = start
+        .iter()
+        .zip(&ascent.contacts)
+        .map(|(p, q)| sph::direction::angle(p, q));
+    Ok(Climb {
+        initial: ascent.start_quality,
+        last: ascent.quality,
+        highest,
+        moved_rad: moved.fold(0.0, f64::max),
+    })
+}
+
+/// All ascents in short.
+pub fn overall(climbs: &[Climb]) -> Overall {
+    let mean_of = |pick: fn(&Climb) -> f64| mean(&climbs.iter().map(pick).collect::<Vec<_>>());
+    let share_of =
+        |which: fn(&&Climb) -> bool| share(climbs.iter().filter(which).count(), climbs.len());
+    Overall {
+        climbs: climbs.len(),
+        share_improved: share_of(|c| c.last > c.initial),
+        share_worsened: share_of(|c| c.last < c.initial),
+        mean_initial: mean_of(|c| c.initial),
+        mean_final: mean_of(|c| c.last),
+        mean_change: mean_of(|c| c.last - c.initial),
+        mean_lost_from_highest: mean_of(|c| c.highest - c.last),
+    }
+}
+
+/// The four ascents that gained most, to stand beside those of Fig. 8.
+fn examples(climbs: &[Climb]) -> Vec<(f64, f64)> {
+    let mut sorted: Vec<&Climb> = climbs.iter().collect();
+    sorted.sort_by(|a, b| (b.last - b.initial).total_cmp(&(a.last - a.initial)));
+    sorted
+        .iter()
+        .take(paper::ASCENT_EXAMPLES.len())
+        .map(|c| (c.initial, c.last))
+        .collect()
+}
+
+fn table(plan: &Plan, ours: &[ObjectClimbs], overall: &Overall) -> Table {
+    let mut table = Table::new(
+        format!(
+            "Sec. IV-D: {} steps of the paper's ascent from the best {} grasps of {} poses (paper: {}, {}, {})",
+            plan.ascent.steps,
+            plan.grasps,
+            plan.poses,
+            paper::ASCENT_STEPS,
+            paper::BEST_GRASPS,
+            paper::HAND_POSES
+        ),
+        &[
+            "object",
+            "ascents",
+            "improved",
+            "worse",
+            "initial",
+            "final",
+            "best final",
+        ],
+    );
+    for o in ours {
+        let of = self::overall(&o.climbs);
+        let ends: Vec<f64> = o.climbs.iter().map(|c| c.last).collect();
+        table.row([
+            o.id.clone(),
+            of.climbs.to_string(),
+            per_cent(of.share_improved),
+            per_cent(of.share_worsened),
+            number(of.mean_initial, 3),
+            number(of.mean_final, 3),
+            number(summary(&ends).map(|s| s.greatest), 3),
+        ]);
+    }
+    table.row([
+        "all".into(),
+        overall.climbs.to_string(),
+        per_cent(overall.share_improved),
+        per_cent(overall.share_worsened),
+        number(overall.mean_initial, 3),
+        number(overall.mean_final, 3),
+        String::new(),
+    ]);
+    let pairs = |list: &[(f64, f64)]| {
+        let text: Vec<String> = list.iter().map(|(a, b)| format!("{a:.2}→{b:.2}")).collect();
+        text.join(", ")
+    };
+    let all: Vec<Climb> = ours.iter().flat_map(|o| o.climbs.iter().copied()).collect();
+    table.note(format!(
+        "Largest improvements {}; examples of the paper {}",
+        pairs(&examples(&all)),
+        pairs(&paper::ASCENT_EXAMPLES)
+    ));
+    table
+}

@@ -1,0 +1,254 @@
+//! Fig. 9 and Sec. IV-E: grasps carried from every object to every other.
+
+use hand::HandGrasp;
+use moduli::PaperTransfer;
+use moduli::transfer::Transfer;
+use rayon::prelude::*;
+use serde::Serialize;
+use serde_json::json;
+
+use crate::error::ExperimentError;
+use crate::output::Findings;
+use crate::paper;
+use crate::pipeline::{FittedObject, FittedSet, best_grasps, fitted_objects};
+use crate::run::Run;
+use crate::sections::gradient_ascent::paper_ascent;
+use crate::statistics::mean;
+use crate::table::{Table, number};
+
+/// What is computed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Numbers of the objects; all when absent.
+    pub objects: Option<Vec<usize>>,
+    /// Hand poses from which Ĝ_i is taken.
+    pub poses: usize,
+    /// Grasps of Ĝ_i that are carried.
+    pub grasps: usize,
+    /// The transfer.
+    pub transfer: PaperTransfer,
+}
+
+impl Plan {
+    /// The plan of a run.
+    pub fn of(run: &Run) -> Self {
+        Self {
+            // Two objects from which the paper reports unstable transfers, and a round one.
+            objects: run.scale.pick(Some(vec![2, 9, 11]), None),
+            poses: run.scale.pick(150, paper::HAND_POSES),
+            grasps: run.scale.pick(2, paper::VERY_BEST_GRASPS),
+            transfer: PaperTransfer {
+                intervals: paper::TRANSFER_STATIONS - 1,
+                ascent: paper_ascent(run.scale.pick(40, paper::TRANSFER_STEPS)),
+            },
+        }
+    }
+}
+
+/// One grasp carried from one object to another.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Carried {
+    /// Where it came from.
+    pub from: String,
+    /// Where it went.
+    pub to: String,
+    /// Its rank among the grasps of its source, from 0.
+    pub rank: usize,
+    /// Q on the source.
+    pub initial: f64,
+    /// Q on the target after the paper's transfer.
+    pub last: f64,
+    /// Q on the target with θ and φ kept.
+    pub naive: f64,
+}
+
+/// Transfers in short.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Count {
+    /// The source; "all" for the sum.
+    pub from: String,
+    /// Transfers.
+    pub transfers: usize,
+    /// Of quality below 0.01 after the paper's transfer.
+    pub unstable: usize,
+    /// Of quality below 0.01 after the naive transfer.
+    pub unstable_naive: usize,
+    /// What the paper counts at full scale; none for objects that it does not have.
+    pub unstable_in_paper: Option<usize>,
+    /// Mean of Q on the source.
+    pub mean_initial: Option<f64>,
+    /// Mean of Q on the target.
+    pub mean_final: Option<f64>,
+    /// Mean of Q on the target, naive.
+    pub mean_naive: Option<f64>,
+}
+
+/// Runs the section.
+pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
+    let plan = Plan::of(run);
+    let set = fitted_objects(run, plan.objects.as_deref(), 2)?;
+    let carried = measure(run, &plan, &set)?;
+    let counts = counts(&set, &carried);
+    let by_source: Vec<_> = paper::UNSTABLE_BY_SOURCE
+        .iter()
+        .map(|(source, count)| json!({ "from": format!("S{source}"), "unstable": count }))
+        .collect();
+    Ok(Findings {
+        objects: set.describe(),
+        paper: json!({
+            "poses": paper::HAND_POSES,
+            "grasps_per_source": paper::VERY_BEST_GRASPS,
+            "stations": paper::TRANSFER_STATIONS,
+            "steps_per_station": paper::TRANSFER_STEPS,
+            "transfers": paper::TRANSFERS,
+            "transfers_per_source": paper::TRANSFERS_PER_SOURCE,
+            "unstable_below": paper::UNSTABLE_BELOW,
+            "unstable": paper::UNSTABLE_TRANSFERS,
+            "unstable_by_source": by_source,
+        }),
+        table: table(&plan, &counts),
+        ours: json!({
+            "poses": plan.poses,
+            "grasps_per_source": plan.grasps,
+            "stations": plan.transfer.intervals + 1,
+            "steps_per_station": plan.transfer.ascent.steps,
+            "counts": counts,
+            "transfers": carried,
+        }),
+    })
+}
+
+/// Carries the best hand grasps of every object to every other object.
+pub fn measure(run: &Run, plan: &Plan, set: &FittedSet) -> Result<Vec<Carried>, ExperimentError> {
+    let grasps = best_grasps(run, set, plan.poses, plan.grasps)?;
+    let pairs: Vec<(usize, usize)> = (0..set.objects.len())
+        .flat_map(|i| (0..set.objects.len()).map(move |j| (i, j)))
+        .filter(|(i, j)| i != j)
+        .collect();
+    let total: usize = pairs.iter().map(|(i, _)| grasps[*i].len()).sum();
+    run.say(&format!("{total} transfers"));
+    let carried = pairs
+        .par_iter()
+        .map(|&(i, j)| carry(run, plan, [&set.objects[i], &set.objects[j]], &grasps[i]))
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok(carried.into_iter().flatten().collect())
+}
+
+/// Carries all grasps of one source to one target, over the same stations.
+fn carry(
+    run: &Run,
+    plan: &Plan,
+    [from, to]: [&FittedObject; 2],
+    grasps: &[HandGrasp],
+) -> Result<Vec<Carried>, ExperimentError> {
+    let transfer = Transfer {
+        from: from.shape(),
+        to: to.shape(),
+        convention: &run.convention,
+        object_origin: to.object_origin(),
+    };
+    let stations = plan.transfer.stations(&transfer)?;
+    grasps
+        .par_iter()
+        .enumerate()
+        .map(|(rank, grasp)| {
+            let start = &grasp.directions;
+            let end = plan
+                .transfer
+                .carry(&transfer, &stations, start, |_, _| {})?;
+            let naive = transfer.naive(start)?;
+            Ok(Carried {
+                from: from.id().to_owned(),
+                to: to.id().to_owned(),
+                rank,
+                initial: end.start_quality,
+                last: end.quality,
+                naive: naive.quality,
+            })
+        })
+        .collect()
+}
+
+/// Counts by source, and over all.
+fn counts(set: &FittedSet, carried: &[Carried]) -> Vec<Count> {
+    let builtin = set.objects.iter().all(|o| o.object.truth.is_some());
+    let mut counts: Vec<Count> = set
+        .objects
+        .iter()
+        .map(|source| {
+            let of: Vec<&Carried> = carried.iter().filter(|c| c.from == source.id()).collect();
+            let paper = builtin.then(|| paper::unstable_from(source.number()));
+            count(source.id(), &of, paper)
+        })
+        .collect();
+    let all: Vec<&Carried> = carried.iter().collect();
+    counts.push(count(
+        "all",
+        &all,
+        builtin.then_some(paper::UNSTABLE_TRANSFERS),
+    ));
+    counts
+}
+
+fn count(from: &str, carried: &[&Carried], unstable_in_paper: Option<usize>) -> Count {
+    let list = |pick: fn(&Carried) -> f64| carried.iter().map(|c| pick(c)).collect::<Vec<f64>>();
+    let unstable = |list: &[f64]| list.iter().filter(|q| **q < paper::UNSTABLE_BELOW).count();
+    let (initial, last, naive) = (list(|c| c.initial), list(|c| c.last), list(|c| c.naive));
+    Count {
+        from: from.to_owned(),
+        transfers: carried.len(),
+        unstable: unstable(&last),
+        unstable_naive: unstable(&naive),
+        unstable_in_paper,
+        mean_initial: mean(&initial),
+        mean_final: mean(&last),
+        mean_naive: mean(&naive),
+    }
+}
+
+fn table(plan: &Plan, counts: &[Count]) -> Table {
+    let mut table = Table::new(
+        format!(
+            "Sec. IV-E: {} stations of {} steps, the best {} grasps of {} poses (paper: {}, {}, {}, {})",
+            plan.transfer.intervals + 1,
+            plan.transfer.ascent.steps,
+            plan.grasps,
+            plan.poses,
+            paper::TRANSFER_STATIONS,
+            paper::TRANSFER_STEPS,
+            paper::VERY_BEST_GRASPS,
+            paper::HAND_POSES
+        ),
+        &[
+            "from",
+            "transfers",
+            "Q < 0.01",
+            "paper, of 110",
+            "naive Q < 0.01",
+            "initial",
+            "final",
+            "naive",
+        ],
+    );
+    for c in counts {
+        let in_paper = c
+            .unstable_in_paper
+            .map_or("–".to_owned(), |n| n.to_string());
+        table.row([
+            c.from.clone(),
+            c.transfers.to_string(),
+            c.unstable.to_string(),
+            in_paper,
+            c.unstable_naive.to_string(),
+            number(c.mean_initial, 3),
+            number(c.mean_final, 3),
+            number(c.mean_naive, 3),
+        ]);
+    }
+    table.note(format!(
+        "The paper carried {} grasps, {} of which ended unstable",
+        paper::TRANSFERS,
+        paper::UNSTABLE_TRANSFERS
+    ));
+    table
+}

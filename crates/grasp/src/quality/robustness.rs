@@ -1,0 +1,91 @@
+//! How much friction a grasp needs, and how far it may move, to stay closed.
+
+use super::epsilon::{QualityError, epsilon_of};
+use super::workspace::Workspace;
+use crate::convention::{Convention, TorqueLength};
+use crate::finger::Setup;
+use crate::hull::search::Ball;
+use crate::wrench::WrenchError;
+
+/// The friction coefficient at which a grasp starts to be force-closed, to a relative 1e-9.
+///
+/// Found by bisection on hard fingers with one common μ (the fingers of the setup are not asked);
+/// closure is monotone in μ. None if the grasp is not closed even at `largest`.
+pub fn least_friction(
+    setup: &Setup<'_>,
+    largest: f64,
+    workspace: &mut Workspace,
+) -> Result<Option<f64>, QualityError> {
+    let mut convention = Convention {
+        friction: largest,
+        ..setup.convention.clone()
+    };
+    let mut closed = |friction: f64| -> Result<bool, WrenchError> {
+        convention.friction = friction;
+        workspace.load(&Setup {
+            convention: &convention,
+            fingers: &[],
+            ..*setup
+        })?;
+        Ok(matches!(workspace.ball(f64::INFINITY), Ball::Closed { .. }))
+    };
+    if !closed(largest)? {
+        return Ok(None);
+    }
+    let (mut low, mut high) = (0.0, largest);
+    while high - low > 1e-9 * high {
+        let middle = 0.5 * (low + high);
+        if middle <= f64::MIN_POSITIVE {
+            break;
+        }
+        if closed(middle)? {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Ok(Some(high))
+}
+
+/// The constant K of |Q(g) − Q(g′)| ≤ K·d(g, g′) for grasps about one centre.
+///
+/// K = |f| √(1 + (1+R)²/length²) with |f| the length of the longest edge, R the largest distance of a
+/// contact from the centre and d the distance of Sec. III-C (`distance`). It holds for round cones,
+/// and for pyramids whose frames are carried along; it supposes a fixed torque length and is None
+/// under `TorqueLength::MaxContactDistance`.
+pub fn lipschitz_constant(setup: &Setup<'_>) -> Result<Option<f64>, WrenchError> {
+    let length = setup.validate()?;
+    if setup.convention.torque_length == TorqueLength::MaxContactDistance {
+        return Ok(None);
+    }
+    let indices = 0..setup.contacts.len();
+    let force = indices
+        .clone()
+        .map(|i| setup.edge_scale(i) * setup.finger(i).limits().0.hypot(1.0))
+        .fold(0.0, f64::max);
+    // Torsion about the normal turns with it.
+    let torsion = indices
+        .map(|i| setup.edge_scale(i) * setup.finger(i).limits().1)
+        .fold(0.0, f64::max);
+    let radius = setup
+        .contacts
+        .iter()
+        .map(|c| (c.position - setup.centre).norm())
+        .fold(0.0, f64::max);
+    let torque = (force * (1.0 + radius) + torsion) / length;
+    Ok(Some(force.hypot(torque)))
+}
+
+/// The radius, in the distance of Sec. III-C, within which a grasp stays force-closed.
+///
+/// Every grasp about the same centre and nearer than Q/K is closed under round cones. 0 for an open
+/// grasp; None where there is no constant (`lipschitz_constant`).
+pub fn closed_radius(
+    setup: &Setup<'_>,
+    workspace: &mut Workspace,
+) -> Result<Option<f64>, QualityError> {
+    let Some(constant) = lipschitz_constant(setup)? else {
+        return Ok(None);
+    };
+    Ok(Some(epsilon_of(setup, workspace)?.lower / constant))
+}

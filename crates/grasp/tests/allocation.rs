@@ -1,0 +1,95 @@
+//! A warm workspace answers without touching the heap.
+#![allow(unsafe_code, reason = "counting allocations takes a global allocator")]
+
+mod common;
+
+use common::{anywhere, around, generator, unit};
+use grasp::{
+    ActiveFacet, Contact, Edges, FrameRule, Gradient, Setup, Workspace, epsilon_linf, epsilon_of,
+    facet_gradient, margin, near_active_facets,
+};
+use nalgebra::Point3;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+thread_local! {
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+// SAFETY: every call goes on to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.with(|c| c.set(c.get() + 1));
+        // SAFETY: the caller's contract is passed on.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller's contract is passed on.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        COUNT.with(|c| c.set(c.get() + 1));
+        // SAFETY: the caller's contract is passed on.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+struct Scratch {
+    workspace: Workspace,
+    facets: Vec<ActiveFacet>,
+    gradient: Gradient,
+}
+
+fn pass(grasps: &[Vec<Contact>], edges: Edges, scratch: &mut Scratch) {
+    let convention = unit(0.8, edges);
+    for contacts in grasps {
+        let setup = Setup {
+            contacts,
+            centre: &Point3::origin(),
+            convention: &convention,
+            fingers: &[],
+        };
+        let workspace = &mut scratch.workspace;
+        epsilon_of(&setup, workspace).unwrap();
+        epsilon_linf(&setup, workspace).unwrap();
+        let found = margin(&setup, workspace).unwrap();
+        facet_gradient(
+            &setup,
+            &found.facet,
+            FrameRule::Tangent,
+            &mut scratch.gradient,
+        )
+        .unwrap();
+        near_active_facets(&setup, 1e-3, workspace, &mut scratch.facets).unwrap();
+    }
+}
+
+#[test]
+fn no_allocation_after_the_first_pass() {
+    let mut rng = generator(30);
+    let mut grasps: Vec<Vec<Contact>> = (0..30).map(|_| around(&mut rng, 4, 1.0)).collect();
+    grasps.extend((0..30).map(|_| anywhere(&mut rng, 3)));
+    let mut scratch = Scratch {
+        workspace: Workspace::new(),
+        facets: Vec::new(),
+        gradient: Gradient::default(),
+    };
+    for edges in [Edges::Polygon(8), Edges::Round { tolerance: 1e-2 }] {
+        pass(&grasps, edges, &mut scratch);
+        let before = COUNT.with(Cell::get);
+        pass(&grasps, edges, &mut scratch);
+        let inside = COUNT.with(Cell::get) - before;
+        // The name of the convention that `pass` itself makes.
+        let convention = COUNT.with(Cell::get);
+        drop(unit(0.8, edges));
+        let own = COUNT.with(Cell::get) - convention;
+        assert_eq!(inside, own);
+    }
+}

@@ -1,0 +1,53 @@
+(function () {
+  "use strict";
+  const data = JSON.parse(document.getElementById("grasp-data").textContent);
+  const view = document.getElementById("view");
+  const selector = document.getElementById("selector");
+  const rows = document.querySelectorAll("#grasps tbody tr");
+  const count = data.grasps.length;
+  let current = 0;
+
+  // A switch that the page does not have is off.
+  function isOn(name) {
+    const box = document.getElementById("show-" + name);
+    return box !== null && box.checked;
+  }
+
+  function shownTraces() {
+    const traces = data.plot.data.concat(count > 0 ? data.grasps[current] : []);
+    for (const trace of traces) {
+      if (trace.meta === "surface") trace.opacity = isOn("glass") ? 0.4 : 1;
+      else if (trace.meta !== "grasp") trace.visible = isOn(trace.meta);
+    }
+    return traces;
+  }
+
+  function draw() {
+    // Handing back the same layout keeps the camera where the reader left it.
+    Plotly.react(view, shownTraces(), data.plot.layout, data.plot.config);
+  }
+
+  function select(index) {
+    current = (index + count) % count;
+    selector.value = String(current);
+    rows.forEach(function (row, k) { row.classList.toggle("current", k === current); });
+    document.querySelectorAll(".details").forEach(function (block, k) { block.hidden = k !== current; });
+    draw();
+  }
+
+  document.querySelectorAll(".controls input").forEach(function (box) {
+    box.addEventListener("change", draw);
+  });
+  if (count === 0) {
+    draw();
+    return;
+  }
+  selector.addEventListener("change", function () { select(Number(selector.value)); });
+  document.getElementById("previous").addEventListener("click", function () { select(current - 1); });
+  document.getElementById("next").addEventListener("click", function () { select(current + 1); });
+  rows.forEach(function (row) {
+    row.addEventListener("click", function () { select(Number(row.dataset.index)); });
+  });
+  const rank = parseInt(location.hash.slice(1), 10);
+  select(rank >= 1 && rank <= count ? rank - 1 : 0);
+})();

@@ -1,0 +1,162 @@
+//! The 3-D view of a grasp page as data for its script.
+//!
+//! The script finds the role of a trace in its `meta` (`surface`, `cloud`, `grasp`,
+//! `cones`, `hand`) and shows the fixed traces with those of the selected grasp.
+
+use plotly::common::{HoverInfo, Position};
+use plotly::layout::Margin;
+use plotly::plot::Traces;
+use plotly::{Plot, Trace};
+
+use crate::glyph;
+use crate::grasp_page::{GraspPage, PageGrasp};
+use crate::mesh::{Extent, Mesh};
+use crate::rounding::{millimetres, point_millimetres};
+use crate::theme;
+use crate::trace;
+use crate::view::{View, ViewProjection};
+
+/// Points of the cloud that are drawn at most: every k-th of more.
+const MAX_CLOUD_POINTS: usize = 4000;
+/// Length of an arrow as a share of the diagonal of the object's box.
+const ARROW: f64 = 0.2;
+/// Slant length of a friction cone as a share of the same diagonal.
+const CONE: f64 = 0.11;
+
+/// `{"plot": figure, "grasps": [[trace…]…]}`.
+pub(crate) fn json(page: &GraspPage) -> String {
+    let object = Extent::of(&in_millimetres(&page.mesh.vertices));
+    let grasps: Vec<String> = page
+        .grasps
+        .iter()
+        .map(|grasp| grasp_traces(grasp, page.friction, object.diagonal()).to_json())
+        .collect();
+    trace::with_light(
+        &format!(
+            "{{\"plot\":{},\"grasps\":[{}]}}",
+            fixed_plot(page, object).to_json(),
+            grasps.join(",\n")
+        ),
+        false,
+    )
+}
+
+/// Surface and cloud, with a layout that has room for every hand.
+fn fixed_plot(page: &GraspPage, object: Extent) -> Plot {
+    let subject = object.padded(0.5 * ARROW * object.diagonal());
+    let mut bounds = object.padded(0.1 * object.diagonal());
+    for grasp in &page.grasps {
+        bounds.grow(&label_positions(grasp, object.diagonal()));
+    }
+    bounds.grow(&in_millimetres(&page.cloud));
+    for hand in page.grasps.iter().filter_map(|g| g.hand.as_ref()) {
+        bounds.grow(&in_millimetres(&hand.vertices));
+    }
+    let view = View {
+        bounds,
+        subject,
+        axes: Some(["x / mm", "y / mm", "z / mm"]),
+        projection: ViewProjection::Perspective,
+    };
+    let mut plot = Plot::new();
+    let vertices = in_millimetres(&page.mesh.vertices);
+    plot.add_trace(trace::mesh(&vertices, &page.mesh.triangles, theme::SURFACE).meta("surface"));
+    if !page.cloud.is_empty() {
+        let stride = page.cloud.len().div_ceil(MAX_CLOUD_POINTS);
+        let thinned: Vec<[f64; 3]> = page.cloud.iter().copied().step_by(stride).collect();
+        let points = in_millimetres(&thinned);
+        plot.add_trace(trace::points(&points, theme::CLOUD, 2).meta("cloud"));
+    }
+    plot.set_layout(
+        theme::layout()
+            .scene(view.scene())
+            .show_legend(false)
+            .margin(Margin::new().left(0).right(0).top(0).bottom(0)),
+    );
+    plot.set_configuration(theme::configuration_3d());
+    plot
+}
+
+/// Contacts with their numbers, arrows, cones and hand of one grasp.
+fn grasp_traces(grasp: &PageGrasp, friction: f64, diagonal_mm: f64) -> Traces {
+    let contacts = in_millimetres(&grasp.contacts);
+    let mut traces = Traces::new();
+    let arrow_length = ARROW * diagonal_mm;
+    let mut arrows = Mesh::default();
+    let mut cones = Mesh::default();
+    for (&contact, out) in contacts.iter().zip(outward_normals(grasp)) {
+        let tail = glyph::add(contact, glyph::scale(out, arrow_length));
+        arrows.append(&glyph::arrow(tail, contact, 0.028 * arrow_length));
+        // A cone of constant slant length keeps its size when μ is large.
+        let height = CONE * diagonal_mm / friction.hypot(1.0);
+        cones.append(&glyph::cone(contact, out, height, friction * height));
+    }
+    if !contacts.is_empty() {
+        traces.push(solid(&arrows, theme::CONTACT, "grasp"));
+        traces.push(contact_markers(&contacts));
+        let numbers = (1..=contacts.len()).map(|k| k.to_string()).collect();
+        traces.push(
+            trace::text(&rounded(&label_positions(grasp, diagonal_mm)), numbers)
+                .text_position(Position::MiddleCenter)
+                .meta("grasp"),
+        );
+        if friction > 0.0 {
+            traces.push(translucent(&cones, theme::CONE, 0.28, "cones"));
+        }
+    }
+    if let Some(hand) = &grasp.hand {
+        let hand = Mesh {
+            vertices: in_millimetres(&hand.vertices),
+            triangles: hand.triangles.clone(),
+        };
+        traces.push(translucent(&hand, theme::HAND, 0.3, "hand"));
+    }
+    traces
+}
+
+/// Unit normals that point out of the object.
+fn outward_normals(grasp: &PageGrasp) -> impl Iterator<Item = [f64; 3]> {
+    let inward = grasp.inward_normals.iter();
+    inward.map(|&n| glyph::scale(n, -1.0 / glyph::norm(n)))
+}
+
+/// Where the numbers of the contacts stand: just beyond the tails of the arrows.
+fn label_positions(grasp: &PageGrasp, diagonal_mm: f64) -> Vec<[f64; 3]> {
+    let contacts = in_millimetres(&grasp.contacts);
+    let pairs = contacts.iter().zip(outward_normals(grasp));
+    pairs
+        .map(|(&c, out)| glyph::add(c, glyph::scale(out, 1.12 * ARROW * diagonal_mm)))
+        .collect()
+}
+
+fn contact_markers(contacts_mm: &[[f64; 3]]) -> Box<dyn Trace> {
+    let texts = contacts_mm.iter().enumerate().map(|(k, c)| {
+        let [x, y, z] = c.map(|v| format!("{v:.1}"));
+        format!("contact {}: {x}, {y}, {z} mm", k + 1)
+    });
+    trace::points(contacts_mm, theme::CONTACT, 7)
+        .hover_text_array(texts.collect())
+        .hover_info(HoverInfo::Text)
+        .meta("grasp")
+}
+
+fn solid(mesh: &Mesh, colour: &'static str, role: &str) -> Box<dyn Trace> {
+    trace::mesh(&rounded(&mesh.vertices), &mesh.triangles, colour).meta(role)
+}
+
+fn translucent(mesh: &Mesh, colour: &'static str, opacity: f64, role: &str) -> Box<dyn Trace> {
+    trace::mesh(&rounded(&mesh.vertices), &mesh.triangles, colour)
+        .flat_shading(role == "hand")
+        .opacity(opacity)
+        .meta(role)
+}
+
+fn in_millimetres(points_m: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    points_m.iter().map(|&p| point_millimetres(p)).collect()
+}
+
+/// Rounds points that are in millimetres already.
+fn rounded(points_mm: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let points = points_mm.iter();
+    points.map(|p| p.map(|v| millimetres(v * 1e-3))).collect()
+}

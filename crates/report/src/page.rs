@@ -1,0 +1,181 @@
+//! Pages of headings, text, figures and tables.
+
+use plotly::Plot;
+
+use crate::bars::{Bars, Histogram};
+use crate::chart::Chart;
+use crate::document::{Scripts, document};
+use crate::error::ReportError;
+use crate::scene::Scene;
+use crate::scene_grid::SceneGrid;
+use crate::table::Table;
+use crate::text;
+use crate::trace;
+
+const SCRIPT: &str = include_str!("assets/figures.js");
+
+/// A page: title, introduction, sections.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Page {
+    /// Title of the page.
+    pub title: String,
+    /// Introduction; blank lines part paragraphs.
+    pub intro: String,
+    /// The sections from top to bottom.
+    pub sections: Vec<Section>,
+}
+
+/// A section of a page.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Section {
+    /// Heading.
+    pub heading: String,
+    /// Text before the blocks; blank lines part paragraphs.
+    pub text: String,
+    /// Figures and tables from top to bottom.
+    pub blocks: Vec<Block>,
+}
+
+/// A figure, a table, or text between them.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Block {
+    /// A 2-D plot.
+    Chart(Chart),
+    /// Bars by category.
+    Bars(Bars),
+    /// A histogram.
+    Histogram(Histogram),
+    /// A 3-D view.
+    Scene(Scene),
+    /// A grid of objects.
+    SceneGrid(SceneGrid),
+    /// A table.
+    Table(Table),
+    /// Paragraphs; blank lines part them.
+    Text(String),
+}
+
+/// A figure on its way to the page.
+struct Figure<'a> {
+    title: &'a str,
+    plot: Plot,
+    /// Height over width.
+    shape: f64,
+    kind: Kind,
+}
+
+/// What the style sheet and the script must know of a figure.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    /// Drawn at once.
+    Plane,
+    /// Takes a graphics context, of which browsers grant about sixteen: drawn when in view.
+    Scene,
+    /// The same, and its view fits one shape only.
+    Grid,
+}
+
+impl Page {
+    /// The whole page as self-contained HTML, plotly.js embedded once (4.6 MB) if there is
+    /// any figure.
+    ///
+    /// Text is escaped. Cost is linear in the data.
+    ///
+    /// # Errors
+    /// [`ReportError`] names section, block and entry of the first number that is not
+    /// finite, not positive on a logarithmic axis, or of lists that do not match.
+    pub fn to_html(&self) -> Result<String, ReportError> {
+        let mut figures = Vec::new();
+        let mut body = String::from("<main class=\"page\">\n<header>\n");
+        body += &format!("<h1>{}</h1>\n", text::html(&self.title));
+        body += &text::paragraphs(&self.intro);
+        body += "</header>\n";
+        for (s, section) in self.sections.iter().enumerate() {
+            body += "<section>\n";
+            if !section.heading.is_empty() {
+                body += &format!("<h2>{}</h2>\n", text::html(&section.heading));
+            }
+            body += &text::paragraphs(&section.text);
+            for (b, block) in section.blocks.iter().enumerate() {
+                let place = format!("section {s} ({}): block {b}", section.heading);
+                body += &block_html(block, &place, &mut figures)?;
+            }
+            body += "</section>\n";
+        }
+        body += "</main>\n";
+        let scripts = (!figures.is_empty()).then_some(Scripts {
+            data: figures,
+            code: SCRIPT,
+        });
+        Ok(document(&self.title, &body, scripts))
+    }
+}
+
+/// The HTML of a block; the data of a figure joins `figures`.
+fn block_html(
+    block: &Block,
+    place: &str,
+    figures: &mut Vec<(String, String)>,
+) -> Result<String, ReportError> {
+    let figure = match block {
+        Block::Text(text) => return Ok(text::paragraphs(text)),
+        Block::Table(table) => return table.html(place),
+        Block::Chart(chart) => Figure {
+            title: &chart.title,
+            plot: chart.plot(place)?,
+            shape: if chart.equal_scale { 0.8 } else { 0.55 },
+            kind: Kind::Plane,
+        },
+        Block::Bars(bars) => Figure {
+            title: &bars.title,
+            plot: bars.plot(place)?,
+            shape: 0.5,
+            kind: Kind::Plane,
+        },
+        Block::Histogram(histogram) => Figure {
+            title: &histogram.title,
+            plot: histogram.plot(place)?,
+            shape: 0.5,
+            kind: Kind::Plane,
+        },
+        Block::Scene(scene) => Figure {
+            title: &scene.title,
+            plot: scene.plot(place)?,
+            shape: 0.7,
+            kind: Kind::Scene,
+        },
+        Block::SceneGrid(grid) => Figure {
+            title: &grid.title,
+            plot: grid.plot(place)?,
+            shape: grid.shape(),
+            kind: Kind::Grid,
+        },
+    };
+    let id = format!("figure-{}", figures.len());
+    let html = figure.html(&id);
+    figures.push((
+        format!("{id}-data"),
+        trace::with_light(&figure.plot.to_json(), figure.kind == Kind::Grid),
+    ));
+    Ok(html)
+}
+
+impl Figure<'_> {
+    fn html(&self, id: &str) -> String {
+        let caption = if self.title.is_empty() {
+            String::new()
+        } else {
+            format!("<figcaption>{}</figcaption>", text::html(self.title))
+        };
+        let kind = match self.kind {
+            Kind::Plane => "",
+            Kind::Scene => " three-d",
+            Kind::Grid => " three-d grid",
+        };
+        format!(
+            "<figure>{caption}<div class=\"plot{kind}\" id=\"{id}\" \
+             style=\"aspect-ratio: {:.3}\"></div></figure>\n",
+            1.0 / self.shape
+        )
+    }
+}

@@ -1,0 +1,105 @@
+//! Colours and fonts: one look for pages and figures.
+
+use plotly::common::{DashType, Font, MarkerSymbol};
+use plotly::configuration::DisplayModeBar;
+use plotly::layout::ModeBar;
+use plotly::{Configuration, Layout};
+
+/// Fonts that every system has; the same list stands in the style sheet.
+pub(crate) const FONT_FAMILY: &str =
+    "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', 'DejaVu Sans', sans-serif";
+/// Body text.
+pub(crate) const INK: &str = "#1d2733";
+/// Secondary text and axis titles (contrast 5.9 : 1 on white).
+pub(crate) const MUTED: &str = "#55606e";
+/// Grid lines.
+pub(crate) const GRID: &str = "#e1e6eb";
+/// Axis lines and reference lines.
+pub(crate) const RULE: &str = "#98a3af";
+/// The object.
+pub(crate) const SURFACE: &str = "#c3d0db";
+/// Contacts and the arrows of their normals.
+pub(crate) const CONTACT: &str = "#b84500";
+/// Friction cones.
+pub(crate) const CONE: &str = "#e69f00";
+/// The hand.
+pub(crate) const HAND: &str = "#4a5f7a";
+/// The cloud of measured points.
+pub(crate) const CLOUD: &str = "#2b6f9e";
+/// Fully transparent.
+pub(crate) const CLEAR: &str = "rgba(0,0,0,0)";
+
+/// The palette of Okabe and Ito, told apart with every common colour vision, without its
+/// yellow (too pale on white).
+const SERIES: [&str; 7] = [
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#4d4d4d",
+];
+
+/// Colour of the `k`-th series.
+pub(crate) fn series_colour(k: usize) -> &'static str {
+    SERIES[k % SERIES.len()]
+}
+
+/// Marker of the `k`-th series in the plane: differs where the colours start again.
+pub(crate) fn series_symbol(k: usize) -> MarkerSymbol {
+    const SYMBOLS: [MarkerSymbol; 5] = [
+        MarkerSymbol::Circle,
+        MarkerSymbol::Diamond,
+        MarkerSymbol::Square,
+        MarkerSymbol::TriangleUp,
+        MarkerSymbol::Cross,
+    ];
+    SYMBOLS[(k / SERIES.len()) % SYMBOLS.len()].clone()
+}
+
+/// Line style of the `k`-th series: differs where the colours start again.
+pub(crate) fn series_dash(k: usize) -> DashType {
+    const DASHES: [DashType; 4] = [
+        DashType::Solid,
+        DashType::DashDot,
+        DashType::LongDash,
+        DashType::Dot,
+    ];
+    DASHES[(k / SERIES.len()) % DASHES.len()].clone()
+}
+
+/// The font of all text inside figures.
+pub(crate) fn font() -> Font {
+    Font::new().family(FONT_FAMILY).size(12).color(INK)
+}
+
+/// The font of axis titles.
+pub(crate) fn muted_font() -> Font {
+    Font::new().family(FONT_FAMILY).size(12).color(MUTED)
+}
+
+/// A layout without title on a transparent ground.
+pub(crate) fn layout() -> Layout {
+    Layout::new()
+        .font(font())
+        .paper_background_color(CLEAR)
+        .plot_background_color(CLEAR)
+        .mode_bar(
+            ModeBar::new()
+                .background_color(CLEAR)
+                .color(RULE)
+                .active_color(INK),
+        )
+        .auto_size(true)
+}
+
+/// For plane figures: resizes with the page and leaves the top to the legend. A double
+/// click undoes a zoom.
+pub(crate) fn configuration() -> Configuration {
+    Configuration::new()
+        .responsive(true)
+        .display_mode_bar(DisplayModeBar::False)
+}
+
+/// For 3-D views: resizes with the page, shows plotly's buttons on hover and no logo.
+pub(crate) fn configuration_3d() -> Configuration {
+    Configuration::new()
+        .responsive(true)
+        .display_logo(false)
+        .display_mode_bar(DisplayModeBar::Hover)
+}

@@ -1,0 +1,105 @@
+//! How a 3-D view is framed: equal scales on all axes, a camera that shows the subject.
+
+use plotly::common::Title;
+use plotly::layout::{
+    AspectMode, AspectRatio, Axis, AxisRange, Camera, CameraCenter, DragMode3D, Eye, LayoutScene,
+    Projection, ProjectionType, Up,
+};
+
+use crate::mesh::Extent;
+use crate::text;
+use crate::theme;
+
+/// Direction from the subject to the camera in perspective views: right, front, above.
+const EYE_DIRECTION: [f64; 3] = [0.56, -0.72, 0.41];
+/// Direction to the camera of a flat view: almost straight from the front.
+const FRONT_DIRECTION: [f64; 3] = [0.0, -0.97, 0.24];
+
+/// What a view shows.
+pub(crate) struct View<'a> {
+    /// All that can be drawn; plotly.js clips at this box.
+    pub(crate) bounds: Extent,
+    /// What the camera looks at and fits into the picture at first.
+    pub(crate) subject: Extent,
+    /// Axis titles; no axes are drawn without.
+    pub(crate) axes: Option<[&'a str; 3]>,
+    /// Perspective, or parallel projection from the front.
+    pub(crate) projection: ViewProjection,
+}
+
+/// How a view is projected.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum ViewProjection {
+    /// From the right, the front and above, at a distance that shows the subject.
+    Perspective,
+    /// Parallel and from the front (−y).
+    Front {
+        /// Height over width of the picture.
+        shape: f64,
+    },
+}
+
+impl View<'_> {
+    /// The scene, with equal scales along x, y and z.
+    pub(crate) fn scene(&self) -> LayoutScene {
+        let unit = self.unit();
+        let [width, depth, height] = self.bounds.size().map(|s| s / unit);
+        LayoutScene::new()
+            .aspect_mode(AspectMode::Manual)
+            .aspect_ratio(AspectRatio::new().x(width).y(depth).z(height))
+            .drag_mode(DragMode3D::Orbit)
+            .camera(self.camera(unit))
+            .x_axis(self.axis(0))
+            .y_axis(self.axis(1))
+            .z_axis(self.axis(2))
+    }
+
+    /// The length that is 1 in the coordinates of the camera.
+    fn unit(&self) -> f64 {
+        let [width, _, height] = self.bounds.size();
+        let unit = match self.projection {
+            ViewProjection::Perspective => self.bounds.longest(),
+            // A parallel view of plotly.js is 2 units high wherever the camera stands, and
+            // 2/shape wide, of which the colour bar takes its part.
+            ViewProjection::Front { shape } => (height / 1.95).max(width * shape / 1.75),
+        };
+        unit.max(f64::MIN_POSITIVE)
+    }
+
+    fn camera(&self, unit: f64) -> Camera {
+        let middle = self.bounds.centre();
+        let target = self.subject.centre();
+        let centre: [f64; 3] = std::array::from_fn(|i| (target[i] - middle[i]) / unit);
+        let (direction, distance, projection) = match self.projection {
+            ViewProjection::Perspective => {
+                let distance = 1.55 * self.subject.diagonal() / unit;
+                (EYE_DIRECTION, distance, ProjectionType::Perspective)
+            }
+            ViewProjection::Front { .. } => {
+                let distance = 2.0 * self.bounds.diagonal() / unit;
+                (FRONT_DIRECTION, distance, ProjectionType::Orthographic)
+            }
+        };
+        let eye: [f64; 3] = std::array::from_fn(|i| centre[i] + distance * direction[i]);
+        Camera::new()
+            .center(CameraCenter::from((centre[0], centre[1], centre[2])))
+            .eye(Eye::from((eye[0], eye[1], eye[2])))
+            .up(Up::from((0.0, 0.0, 1.0)))
+            .projection(Projection::new().projection_type(projection))
+    }
+
+    fn axis(&self, k: usize) -> Axis {
+        let axis = Axis::new().range(AxisRange::new(self.bounds.low[k], self.bounds.high[k]));
+        match self.axes {
+            None => axis.visible(false),
+            Some(titles) => axis
+                .title(Title::with_text(text::plot(titles[k])).font(theme::muted_font()))
+                .tick_font(theme::muted_font())
+                .n_ticks(6)
+                .grid_color(theme::GRID)
+                .line_color(theme::RULE)
+                .zero_line(false)
+                .show_spikes(false),
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! What to assume where a cloud has nothing: a membrane over the hole.
+
+use sph::Direction;
+
+use crate::point_cloud::RadialSamples;
+use crate::star::Cells;
+
+/// Sweeps of Gauss and Seidel; holes are a few dozen cells wide at most.
+const SWEEPS: usize = 200;
+
+/// The samples, followed by one for every unseen direction.
+///
+/// Smoothness alone lets a surface shoot up over a hole as wide as half the sphere. The value given
+/// to an unseen direction is the harmonic continuation of what was seen around the hole (a discrete
+/// Laplace equation on cells), so it stays between the least and the largest radius at the rim. It
+/// weighs as much as one point of the cloud.
+pub(crate) fn filled_in(
+    samples: &RadialSamples,
+    unseen: &[Direction],
+) -> (Vec<Direction>, Vec<f64>) {
+    let mut directions = samples.directions.clone();
+    let mut values = samples.radii.clone();
+    if unseen.is_empty() || samples.radii.is_empty() {
+        return (directions, values);
+    }
+    let radii = membrane(samples);
+    let cells = Cells::for_views(samples.radii.len());
+    directions.extend_from_slice(unseen);
+    values.extend(unseen.iter().map(|p| radii[cells.index(p)]));
+    (directions, values)
+}
+
+/// Mean radius of every seen cell, and the mean of the neighbours for every other.
+fn membrane(samples: &RadialSamples) -> Vec<f64> {
+    let cells = Cells::for_views(samples.radii.len());
+    let mut sums = vec![(0.0, 0_usize); cells.count()];
+    for (p, r) in samples.directions.iter().zip(&samples.radii) {
+        let (sum, count) = &mut sums[cells.index(p)];
+        *sum += r;
+        *count += 1;
+    }
+    let mean = samples.radii.iter().sum::<f64>() / samples.radii.len() as f64;
+    let value = |&(sum, count): &(f64, usize)| if count > 0 { sum / count as f64 } else { mean };
+    let mut radii: Vec<f64> = sums.iter().map(value).collect();
+    let holes: Vec<(usize, Vec<usize>)> = (0..cells.count())
+        .filter(|cell| sums[*cell].1 == 0)
+        .map(|cell| (cell, cells.neighbours(cell)))
+        .collect();
+    for _ in 0..SWEEPS {
+        for (cell, around) in &holes {
+            let sum: f64 = around.iter().map(|k| radii[*k]).sum();
+            radii[*cell] = sum / around.len() as f64;
+        }
+    }
+    radii
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::star::star_shape;
+    use sph::direction::even_directions;
+
+    #[test]
+    fn a_hole_is_spanned_from_its_rim() {
+        let directions: Vec<Direction> = even_directions(30_000)
+            .into_iter()
+            .filter(|p| p.x < 0.6)
+            .collect();
+        let samples = RadialSamples {
+            radii: directions.iter().map(|p| 0.05 + 0.02 * p.x).collect(),
+            directions,
+        };
+        let star = star_shape(&samples);
+        let (directions, values) = filled_in(&samples, &star.unseen_directions);
+        assert_eq!(
+            directions.len(),
+            samples.radii.len() + star.unseen_directions.len()
+        );
+        let new = &values[samples.radii.len()..];
+        assert!(new.len() > 5);
+        // The rim lies between x = 0.35 and x = 0.6.
+        assert!(new.iter().all(|r| (0.055..=0.0625).contains(r)), "{new:?}");
+    }
+}

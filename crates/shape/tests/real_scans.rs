@@ -1,0 +1,236 @@
+//! Fits of real scans: proved, close to the points, sane where there are none.
+
+mod common;
+
+use common::{cloud, index, objects};
+use nalgebra::{DMatrix, DVector, Point3, Vector3};
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+use shape::fit::{Fit, FitError, FitSettings, fit};
+use shape::point_cloud::RadialSamples;
+use shape::{PointCloud, star_shape};
+use sph::grid::RingGrid;
+use sph::regression::{Penalty, Samples, gram};
+use sph::{Coefficients, batch};
+
+const SETTINGS: FitSettings = FitSettings {
+    degree: 50,
+    lambda: None,
+};
+
+/// Root mean square of r(pᵢ) − rᵢ.
+fn rms(beta: &Coefficients, samples: &RadialSamples) -> f64 {
+    let fitted = batch::evaluate(beta, &samples.directions);
+    let pairs = fitted.iter().zip(&samples.radii);
+    let squares: f64 = pairs.map(|(a, b)| (a - b).powi(2)).sum();
+    (squares / samples.radii.len() as f64).sqrt()
+}
+
+fn least_squares(samples: &RadialSamples) -> Coefficients {
+    let samples = Samples {
+        directions: &samples.directions,
+        values: &samples.radii,
+    };
+    gram::fit(samples, SETTINGS.degree, Penalty::NONE).unwrap()
+}
+
+fn positive_on_a_grid(beta: &Coefficients) -> bool {
+    let values = RingGrid::equiangular(201, 400).synthesis(beta).values;
+    values.iter().all(|r| *r > 0.0)
+}
+
+/// A random half of a cloud, and the rest.
+fn halves(cloud: &PointCloud, seed: u64) -> (PointCloud, PointCloud) {
+    let mut points = cloud.points().to_vec();
+    points.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));
+    let rest = points.split_off(points.len() / 2);
+    (
+        PointCloud::new(points).unwrap(),
+        PointCloud::new(rest).unwrap(),
+    )
+}
+
+/// Bounds are proved, positive and close to the radii seen.
+fn assert_sane(name: &str, cloud: &PointCloud, fit: &Fit) {
+    let (low, high) = fit.shape.radius_bounds();
+    let radii = cloud.seen_from(&fit.centre_in_cloud).radii;
+    let largest = radii.iter().fold(0.0_f64, |a, b| a.max(*b));
+    assert!(low > 0.0, "{name}: {low}");
+    assert!(high <= 1.25 * largest, "{name}: {high} {largest}");
+}
+
+#[test]
+fn main_objects_are_certified_and_close_to_their_points() {
+    for entry in index().iter().filter(|e| e.class == "main") {
+        let name = &entry.name;
+        let cloud = cloud(name).unwrap();
+        let fit = fit(&cloud, &SETTINGS).unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert_sane(name, &cloud, &fit);
+        assert_eq!(fit.outliers, [], "{name} has no outliers");
+        let samples = cloud.seen_from(&fit.centre_in_cloud);
+        let plain = least_squares(&samples);
+        let (ours, theirs) = (
+            rms(fit.shape.coefficients(), &samples),
+            rms(&plain, &samples),
+        );
+        eprintln!(
+            "{name} {ours:.2e} {theirs:.2e} {:?} {}",
+            fit.shape.radius_bounds(),
+            positive_on_a_grid(&plain)
+        );
+        assert!((ours - fit.rms).abs() <= 1e-12, "{name}");
+        if positive_on_a_grid(&plain) {
+            assert!(
+                ours <= 1.3 * theirs,
+                "{name}: {ours:.2e} against {theirs:.2e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn main_objects_predict_the_half_that_was_held_out() {
+    for entry in index().iter().filter(|e| e.class == "main") {
+        let name = &entry.name;
+        let (half, rest) = halves(&cloud(name).unwrap(), 11);
+        let fit = fit(&half, &SETTINGS).unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert_sane(name, &half, &fit);
+        let held_out = rest.seen_from(&fit.centre_in_cloud);
+        let plain = least_squares(&half.seen_from(&fit.centre_in_cloud));
+        let (ours, theirs) = (
+            rms(fit.shape.coefficients(), &held_out),
+            rms(&plain, &held_out),
+        );
+        eprintln!("{name} held out {ours:.2e} {theirs:.2e}");
+        assert!(ours <= theirs, "{name}: {ours:.2e} against {theirs:.2e}");
+        if entry.star_once >= 0.99 {
+            assert!(ours <= 2e-3, "{name}: {ours:.2e}");
+        }
+    }
+}
+
+#[test]
+fn the_measure_tells_open_vessels_from_scans() {
+    for entry in index() {
+        let cloud = cloud(&entry.name).unwrap();
+        let star = star_shape(&cloud.seen_from(&cloud.mean()));
+        let open = ["mug", "bowl"].contains(&entry.name.as_str());
+        if open {
+            assert!(star.multiple >= 0.35, "{}: {}", entry.name, star.multiple);
+            assert!(star.unseen >= 0.05 && !star.crossings.is_empty());
+        } else {
+            assert!(star.multiple <= 0.05, "{}: {}", entry.name, star.multiple);
+        }
+    }
+}
+
+#[test]
+fn hard_objects_are_certified_or_refused() {
+    for entry in index().iter().filter(|e| e.class == "hard") {
+        let name = entry.name.as_str();
+        let cloud = cloud(name).unwrap();
+        match (name, fit(&cloud, &SETTINGS)) {
+            ("mug" | "bowl", Err(FitError::NotStarShaped { star, worst })) => {
+                assert!(worst.inner < worst.outer && star.multiple > 0.2);
+                let text = FitError::NotStarShaped { star, worst }.to_string();
+                assert!(text.contains("not star-shaped"), "{text}");
+            }
+            ("mug" | "bowl", other) => panic!("{name}: {other:?}"),
+            (_, Ok(fit)) => {
+                eprintln!(
+                    "{name} {:.2e} {:?} unseen {} outliers {} λ {:.1e}",
+                    fit.rms,
+                    fit.shape.radius_bounds(),
+                    fit.star.unseen,
+                    fit.outliers.len(),
+                    fit.lambda
+                );
+                assert_sane(name, &cloud, &fit);
+            }
+            (_, Err(error)) => panic!("{name}: {error}"),
+        }
+    }
+}
+
+#[test]
+fn outliers_do_not_move_the_sugar_box() {
+    let (Some(root), Some(dirty), Some(clean)) =
+        (objects(), cloud("sugar_box_outliers"), cloud("sugar_box"))
+    else {
+        return;
+    };
+    let list = std::fs::read_to_string(root.join("sugar_box_outliers.outlier_rows.txt")).unwrap();
+    let planted: Vec<usize> = list
+        .split_whitespace()
+        .map(|w| w.parse().unwrap())
+        .collect();
+    let found = fit(&dirty, &SETTINGS).unwrap();
+    let mut is_planted = vec![false; dirty.points().len()];
+    planted.iter().for_each(|i| is_planted[*i] = true);
+    let good = |i: &usize| !is_planted[*i];
+    let points = (0..is_planted.len())
+        .filter(good)
+        .map(|i| dirty.points()[i]);
+    let points = PointCloud::new(points.collect()).unwrap();
+    let ours = rms(
+        found.shape.coefficients(),
+        &points.seen_from(&found.centre_in_cloud),
+    );
+    let reference = fit(&clean, &SETTINGS).unwrap().rms;
+    let hits = found.outliers.iter().filter(|i| is_planted[**i]).count();
+    eprintln!(
+        "sugar_box_outliers on clean points {ours:.2e}, sugar_box {reference:.2e}, {hits} of {} found, {} wrong",
+        planted.len(),
+        found.outliers.len() - hits
+    );
+    assert!(
+        ours <= reference + 1e-3,
+        "{ours:.2e} against {reference:.2e}"
+    );
+    assert!(hits * 10 >= planted.len() * 9 && found.outliers.len() - hits <= 20);
+}
+
+/// Distances of points from the sphere that fits them best.
+fn out_of_round(points: &[Point3<f64>]) -> f64 {
+    // |p|² = 2 c·p + (R² − |c|²) is linear in c and the bracket.
+    let rows = DMatrix::from_fn(points.len(), 4, |i, j| {
+        if j < 3 { 2.0 * points[i][j] } else { 1.0 }
+    });
+    let right = DVector::from_fn(points.len(), |i, _| points[i].coords.norm_squared());
+    let solution = rows.svd(true, true).solve(&right, 1e-12).unwrap();
+    let centre = Vector3::new(solution[0], solution[1], solution[2]);
+    let radius = (solution[3] + centre.norm_squared()).sqrt();
+    let off = |p: &Point3<f64>| ((p.coords - centre).norm() - radius).abs();
+    points.iter().map(off).fold(0.0, f64::max)
+}
+
+#[test]
+fn four_hundred_points_of_a_ball_make_a_ball() {
+    let Some(cloud) = cloud("baseball_sparse_400") else {
+        return;
+    };
+    let ball = fit(&cloud, &SETTINGS).unwrap();
+    let off = out_of_round(&ball.shape.mesh(60, 120).vertices);
+    eprintln!("out of round {off:.2e}");
+    assert!(off <= 1e-3, "{off:.2e}");
+}
+
+#[test]
+fn one_view_of_a_bottle_stays_close_to_the_whole_bottle() {
+    let (Some(view), Some(whole)) = (cloud("mustard_bottle_partial"), cloud("mustard_bottle"))
+    else {
+        return;
+    };
+    let fit = fit(&view, &SETTINGS).unwrap();
+    assert!(fit.star.unseen >= 0.1, "{}", fit.star.unseen);
+    let samples = whole.seen_from(&fit.centre_in_cloud);
+    let error = rms(fit.shape.coefficients(), &samples);
+    let largest = samples.radii.iter().fold(0.0_f64, |a, b| a.max(*b));
+    eprintln!(
+        "partial: {error:.2e}, {:?}, largest {largest}",
+        fit.shape.radius_bounds()
+    );
+    assert!(error <= 0.02, "{error:.2e}");
+    assert!(fit.shape.radius_bounds().1 <= 1.25 * largest);
+}

@@ -1,0 +1,135 @@
+//! Conjugate gradients, stopped by an estimate of the error in the energy norm.
+
+/// Decrements that the error estimate looks back on.
+const WINDOW: usize = 4;
+
+/// What an iteration found.
+pub(super) struct Outcome {
+    pub(super) solution: Vec<f64>,
+    /// xᵀMx − 2bᵀx at the solution: the least value of the quadratic, up to the error.
+    pub(super) quadratic: f64,
+    pub(super) iterations: usize,
+    pub(super) converged: bool,
+}
+
+/// How far an iteration goes.
+#[derive(Clone, Copy)]
+pub(super) struct Limits {
+    /// Most iterations.
+    pub(super) iterations: usize,
+    /// Squared error allowed, as a share of offset + (value of the quadratic) ...
+    pub(super) share: f64,
+    /// ... with this offset, and ...
+    pub(super) offset: f64,
+    /// ... never asked to be below this.
+    pub(super) floor: f64,
+}
+
+impl Limits {
+    /// A squared error of `share` times the squared size of the solution.
+    pub(super) fn to(share: f64, unknowns: usize) -> Self {
+        Self {
+            iterations: unknowns.max(100),
+            share,
+            offset: 0.0,
+            floor: 0.0,
+        }
+    }
+}
+
+/// Solves Mx = b for a positive definite M, given as a function, with a preconditioner C ≈ M⁻¹.
+///
+/// Step k lowers the quadratic xᵀMx − 2bᵀx by α rᵀCr, and the sum of all later decrements is the
+/// squared error in the norm of M (Hestenes and Stiefel 1952): the last few stand for it.
+pub(super) fn solve(
+    apply: impl Fn(&[f64]) -> Vec<f64>,
+    precondition: impl Fn(&[f64]) -> Vec<f64>,
+    right: &[f64],
+    start: Option<&[f64]>,
+    limits: Limits,
+) -> Outcome {
+    let mut x = vec![0.0; right.len()];
+    let mut r = right.to_vec();
+    let mut quadratic = 0.0;
+    if let Some(start) = start {
+        x.copy_from_slice(start);
+        for (r, m) in r.iter_mut().zip(apply(start)) {
+            *r -= m;
+        }
+        quadratic = -dot(right, start) - dot(&r, start);
+    }
+    let mut z = precondition(&r);
+    let mut direction = z.clone();
+    let mut energy = dot(&r, &z);
+    let mut recent = [f64::INFINITY; WINDOW];
+    for iteration in 0..limits.iterations {
+        if !(energy > 0.0) {
+            // Nothing is left, or the matrix is not positive definite in floating point.
+            return outcome(x, quadratic, iteration, energy == 0.0);
+        }
+        let image = apply(&direction);
+        let curvature = dot(&direction, &image);
+        if !(curvature > 0.0) {
+            return outcome(x, quadratic, iteration, false);
+        }
+        let alpha = energy / curvature;
+        for i in 0..x.len() {
+            x[i] += alpha * direction[i];
+            r[i] -= alpha * image[i];
+        }
+        quadratic -= alpha * energy;
+        recent[iteration % WINDOW] = alpha * energy;
+        let allowed = (limits.share * (limits.offset + quadratic).abs()).max(limits.floor);
+        if recent.iter().sum::<f64>() <= allowed {
+            return outcome(x, quadratic, iteration + 1, true);
+        }
+        z = precondition(&r);
+        let next = dot(&r, &z);
+        let beta = next / energy;
+        energy = next;
+        for (d, z) in direction.iter_mut().zip(&z) {
+            *d = z + beta * *d;
+        }
+    }
+    outcome(x, quadratic, limits.iterations, false)
+}
+
+fn outcome(solution: Vec<f64>, quadratic: f64, iterations: usize, converged: bool) -> Outcome {
+    Outcome {
+        solution,
+        quadratic,
+        iterations,
+        converged,
+    }
+}
+
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn solves_a_diagonal_system_from_any_start() {
+        let diagonal: Vec<f64> = (1..60).map(|i| f64::from(i * i)).collect();
+        let truth: Vec<f64> = (1..60).map(|i| f64::from(i).sin()).collect();
+        let apply = |x: &[f64]| x.iter().zip(&diagonal).map(|(x, d)| x * d).collect::<Vec<_>>();
+        let right = apply(&truth);
+        let limits = Limits {
+            iterations: 400,
+            share: 1e-24,
+            offset: 0.0,
+            floor: 0.0,
+        };
+        for start in [None, Some(vec![0.5; truth.len()])] {
+            let found = solve(apply, <[f64]>::to_vec, &right, start.as_deref(), limits);
+            assert!(found.converged && found.iterations > 10);
+            for (a, b) in found.solution.iter().zip(&truth) {
+                assert!((a - b).abs() <= 1e-11);
+            }
+            assert!((found.quadratic + dot(&right, &truth)).abs() <= 1e-10 * dot(&right, &truth));
+        }
+    }
+}
