@@ -43,7 +43,7 @@ def ours(cases):
     run = subprocess.run('cargo run -q --release -p moduli-grasp --example quality_table'.split(), input=text, capture_output=True, text=True)
     if run.returncode: raise SystemExit(run.stderr)
     *rows, us = run.stdout.split('\n')[:-1]
-    return np.array([[float(x) for x in r.split()] for r in rows]), float(us)
+    return np.array([[float(x) for x in r.split()] for r in rows]), float(us.split()[0])
 
 def timed(cases):
     t = []

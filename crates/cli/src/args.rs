@@ -67,7 +67,7 @@ pub(crate) struct CloudOptions {
     #[arg(long, default_value_t = 50, value_parser = count_in::<0, 150>)]
     pub(crate) degree: usize,
     /// Weight of the penalty; chosen from the data by default.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub(crate) lambda: Option<f64>,
 }
 
@@ -146,13 +146,13 @@ pub(crate) struct ConventionOptions {
     #[arg(long, default_value = "paper")]
     pub(crate) convention: String,
     /// Friction coefficient in place of the convention's.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub(crate) friction: Option<f64>,
     /// Edges of the friction cone: a number, or `round`.
     #[arg(long)]
     pub(crate) edges: Option<String>,
     /// Length that divides torques, in metres, in place of the convention's.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub(crate) torque_length: Option<f64>,
     /// Width of the interval for round cones.
     #[arg(long, default_value_t = 1e-4)]

@@ -5,6 +5,7 @@
 
 pub mod args;
 pub mod error;
+pub mod figures;
 pub mod library;
 pub mod objects;
 pub mod output;

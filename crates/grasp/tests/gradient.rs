@@ -146,6 +146,38 @@ fn closed_polygons_of_every_kind() {
 }
 
 #[test]
+fn round_cones_touch_at_one_exact_face() {
+    let mut rng = generator(15);
+    let mut compared = 0;
+    for _ in 0..60 {
+        let case = Case {
+            contacts: around(&mut rng, 3, 1.0),
+            centre: Point3::from(in_ball(&mut rng) * 0.1),
+            convention: unit(0.8, Edges::Round { tolerance: 1e-4 }),
+            fingers: Vec::new(),
+        };
+        let found = margin(&case.setup(), &mut Workspace::new()).unwrap();
+        // One carrier a contact: the touching face, not a facet of the inner polytope.
+        if !found.closed || found.facet.carriers().len() > 3 {
+            continue;
+        }
+        let exact = Case {
+            convention: unit(0.8, Edges::Round { tolerance: 1e-9 }),
+            contacts: case.contacts.clone(),
+            centre: case.centre,
+            fingers: Vec::new(),
+        };
+        let narrow = margin(&exact.setup(), &mut Workspace::new()).unwrap();
+        assert!(found.facet.offset <= narrow.upper + 1e-5);
+        if (found.facet.offset - narrow.facet.offset).abs() <= 1e-10 {
+            compare(&case, &mut rng, 1e-6);
+            compared += 1;
+        }
+    }
+    assert!(compared > 25, "{compared}");
+}
+
+#[test]
 fn open_grasps_have_a_gradient_too() {
     let mut rng = generator(6);
     let mut compared = 0;

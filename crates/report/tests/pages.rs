@@ -134,7 +134,8 @@ fn every_block(text: &str) -> Page {
 
 /// The page without the source of plotly.js, which names addresses that it never loads here.
 fn own_part(html: &str) -> String {
-    let start = html.find("<script>/**\n* plotly.js").unwrap();
+    let tag = "<script>";
+    let start = html.find("<script>/**\n* plotly.js").unwrap() + tag.len();
     let end = start + html[start..].find("</script>").unwrap();
     format!("{}{}", &html[..start], &html[end..])
 }

@@ -5,22 +5,28 @@
 
 pub mod embedding;
 pub mod fit;
+mod immersion;
 pub mod io;
 pub mod mass;
 pub mod noise;
 mod outliers;
-mod rotation_field;
 pub mod point_cloud;
 pub mod radial;
+mod rotation_field;
 pub mod space;
+mod spherical;
+mod spherical_fit;
 pub mod star;
 pub mod surface;
 pub mod triangle_mesh;
 mod unseen;
 
 pub use fit::{Fit, FitError, FitSettings};
+pub use immersion::{Immersion, SphericalError};
 pub use point_cloud::{CloudError, PointCloud};
 pub use radial::{RadialError, RadialShape};
+pub use spherical::SphericalShape;
+pub use spherical_fit::{SphericalFit, SphericalFitError, fit_spherical};
 pub use star::{Crossing, StarShape, star_shape};
 pub use surface::{Differential, Surface};
 pub use triangle_mesh::TriangleMesh;

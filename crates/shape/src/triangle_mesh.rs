@@ -27,13 +27,21 @@ impl TriangleMesh {
                 vertices.push(Point3::from(p * radii[j * columns + k]));
             }
         }
-        let mut triangles = Vec::with_capacity(2 * rings.len() * columns);
-        for j in 0..rings.len().saturating_sub(1) {
+        Self::from_ring_points(rings.len(), columns, vertices)
+    }
+
+    /// The closed surface over `rows` rings of `columns` points each, from pole to pole.
+    ///
+    /// `vertices` has the points ring after ring. The first and the last ring are poles: triangles
+    /// with an edge along them have no area and are left out.
+    pub fn from_ring_points(rows: usize, columns: usize, vertices: Vec<Point3<f64>>) -> Self {
+        let mut triangles = Vec::with_capacity(2 * rows * columns);
+        for j in 0..rows.saturating_sub(1) {
             for k in 0..columns {
                 let at = |row: usize, column: usize| (row * columns + column % columns) as u32;
                 let (a, b) = (at(j, k), at(j + 1, k));
                 let (c, d) = (at(j + 1, k + 1), at(j, k + 1));
-                if j + 2 < rings.len() {
+                if j + 2 < rows {
                     triangles.push([a, b, c]);
                 }
                 if j > 0 {

@@ -1,6 +1,9 @@
 //! Grids of rings on the sphere, and synthesis and analysis on them.
 
+use nalgebra::Vector3;
+
 use crate::coefficients::Coefficients;
+use crate::direction::Direction;
 use crate::legendre::Legendre;
 
 /// Rings of equal z, each with the same evenly spaced longitudes φ_k = 2πk/n.
@@ -62,6 +65,17 @@ impl RingGrid {
     /// Points a ring.
     pub fn longitudes(&self) -> usize {
         self.longitudes
+    }
+
+    /// All grid points, ring after ring.
+    pub fn directions(&self) -> impl Iterator<Item = Direction> {
+        let step = std::f64::consts::TAU / self.longitudes as f64;
+        self.rings.iter().flat_map(move |&(sin, cos)| {
+            (0..self.longitudes).map(move |k| {
+                let (s, c) = (step * k as f64).sin_cos();
+                Direction::new_unchecked(Vector3::new(sin * c, sin * s, cos))
+            })
+        })
     }
 
     /// Values of Σ β_{lm} Y_{lm} on the grid. About rings·(2L² + 4·L·longitudes) flops.

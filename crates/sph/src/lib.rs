@@ -9,15 +9,18 @@ pub mod bounds;
 pub mod coefficients;
 pub mod direction;
 mod fft;
+pub mod field;
 pub mod grid;
 pub mod index;
 mod kernel;
 mod legendre;
 pub mod regression;
 mod rings;
+pub mod rotation;
 pub mod scattered;
 mod torus;
 
 pub use basis::{Basis, Harmonic, Jet};
 pub use coefficients::{Coefficients, CoefficientsError};
 pub use direction::{Direction, SphericalCoords};
+pub use field::Field;

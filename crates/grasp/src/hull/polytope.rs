@@ -93,8 +93,11 @@ impl Polytope {
         self.worst_residual = 0.0;
         self.rounding = 0.0;
         points.iter().for_each(|p| self.widen(p));
-        self.epoch = 0;
-        self.table.iter_mut().for_each(|s| s.epoch = 0);
+        // Stamps go on counting, so that old ones mean nothing; long before they run out, anew.
+        if self.epoch > u32::MAX / 2 {
+            self.epoch = 0;
+            self.table.clear();
+        }
         for (omitted, opposite) in points.iter().enumerate() {
             let vertices: [u16; 6] =
                 std::array::from_fn(|i| (if i < omitted { i } else { i + 1 }) as u16);
@@ -206,14 +209,14 @@ impl Polytope {
         while next < self.visible.len() {
             let facet = self.visible[next];
             next += 1;
-            for slot in 0..6 {
-                let across = self.facets[facet as usize].links[slot].facet();
-                let other = &mut self.facets[across];
+            let links = self.facets[facet as usize].links;
+            for (slot, link) in links.into_iter().enumerate() {
+                let other = &mut self.facets[link.facet()];
                 if other.epoch != epoch {
                     other.epoch = epoch;
                     other.height = other.plane.height(point);
                     if other.height > tolerance {
-                        self.visible.push(across as u32);
+                        self.visible.push(link.facet() as u32);
                     }
                 }
                 if other.height <= tolerance {
@@ -227,10 +230,10 @@ impl Polytope {
     fn raise(&mut self, ridge: Link, apex: u16) {
         let lower = &self.facets[ridge.facet()];
         let beyond = lower.links[ridge.slot()];
-        let mut vertices = [apex; 6];
-        for (i, v) in vertices.iter_mut().take(5).enumerate() {
-            *v = lower.vertices[if i < ridge.slot() { i } else { i + 1 }];
-        }
+        let omitted = ridge.slot();
+        let mut vertices = lower.vertices;
+        vertices.copy_within(omitted + 1.., omitted);
+        vertices[5] = apex;
         let plane = match pencil(lower, &self.facets[beyond.facet()], self.rounding) {
             Some(plane) => plane,
             None => self.direct(&vertices, lower.vertices[ridge.slot()]),
@@ -247,20 +250,20 @@ impl Polytope {
             finished: false,
         });
         self.facets[beyond.facet()].links[beyond.slot()] = Link::new(facet, 5);
+        // A ridge holds the new vertex and four others, 16 bits each: the rest of five when one goes.
+        let five = vertices[..5]
+            .iter()
+            .fold(0u128, |all, &v| all << 16 | u128::from(v));
         for slot in 0..5 {
-            self.join(facet, slot, &vertices);
+            let below = (1u128 << (16 * (4 - slot))) - 1;
+            let key = (five & below) | (five >> 16 & !below);
+            self.join(facet, slot, key as u64);
         }
     }
 
     /// Links ridge `slot` of a new facet with its twin, or leaves it in the table for the twin.
-    fn join(&mut self, facet: u32, slot: usize, vertices: &[u16; 6]) {
-        // The ridge holds the new vertex and four others: 16 bits each make the whole key.
-        let mut key = 0u64;
-        for (i, &v) in vertices[..5].iter().enumerate() {
-            if i != slot {
-                key = key << 16 | u64::from(v);
-            }
-        }
+    #[inline]
+    fn join(&mut self, facet: u32, slot: usize, key: u64) {
         let mask = self.table.len() - 1;
         let mut at = (key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32) as usize & mask;
         let link = Link::new(facet, slot);

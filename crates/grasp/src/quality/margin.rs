@@ -1,6 +1,7 @@
 //! The signed margin of a grasp and the facets that decide it.
 
 use super::epsilon::QualityError;
+use super::polish::touching_face;
 use super::workspace::{Workspace, requested_gap};
 use crate::finger::Setup;
 use crate::hull::min_norm::{Corral, Effort, Nearest};
@@ -38,7 +39,7 @@ impl ActiveFacet {
         &self.carriers[..self.count]
     }
 
-    fn new(
+    pub(crate) fn new(
         offset: f64,
         normal: &V6,
         carriers: impl IntoIterator<Item = (usize, V6, f64)>,
@@ -84,7 +85,9 @@ pub struct Margin {
 /// The signed margin: epsilon inside, minus the distance outside, with the nearest facet.
 ///
 /// An optimiser can start from an open grasp and cross into closure: the margin is continuous and
-/// its gradient follows from the facet on both sides (`facet_gradient`).
+/// its gradient follows from the facet on both sides (`facet_gradient`). For round cones the facet is
+/// the face that the ball touches, found to rounding by Newton's method where the touching point is
+/// regular, whatever the width of the interval.
 pub fn margin(setup: &Setup<'_>, workspace: &mut Workspace) -> Result<Margin, QualityError> {
     workspace.load(setup)?;
     match workspace.ball(requested_gap(setup.convention.edges)) {
@@ -94,13 +97,24 @@ pub fn margin(setup: &Setup<'_>, workspace: &mut Workspace) -> Result<Margin, Qu
             upper,
             facet,
             ..
-        } => Ok(Margin {
-            value: lower,
-            lower,
-            upper,
-            closed: true,
-            facet: closest(workspace, facet),
-        }),
+        } => {
+            let mut facet = closest(workspace, facet);
+            let mut upper = upper;
+            if workspace.round
+                && let Some(touching) = touching_face(&workspace.cones, &facet)
+                && (lower..=upper + 1e-12 * workspace.reach()).contains(&touching.offset)
+            {
+                facet = touching;
+                upper = upper.min(touching.offset);
+            }
+            Ok(Margin {
+                value: lower,
+                lower,
+                upper,
+                closed: true,
+                facet,
+            })
+        }
     }
 }
 

@@ -5,6 +5,7 @@ mod isotropy;
 mod linf;
 mod margin;
 mod min_weight;
+mod polish;
 mod robustness;
 mod volume;
 mod workspace;

@@ -33,6 +33,11 @@ impl Workspace {
         Self::default()
     }
 
+    /// The facets that the last search made: what its cost is proportional to.
+    pub fn facets_made(&self) -> usize {
+        self.search.polytope.created
+    }
+
     /// Lays out a grasp. Contacts are taken in the order of their coordinates, so that results are
     /// the same to the last bit in whatever order they come.
     pub(crate) fn load(&mut self, setup: &Setup<'_>) -> Result<(), WrenchError> {

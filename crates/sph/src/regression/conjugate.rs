@@ -27,9 +27,9 @@ pub(super) struct Limits {
 
 impl Limits {
     /// A squared error of `share` times the squared size of the solution.
-    pub(super) fn to(share: f64, unknowns: usize) -> Self {
+    pub(super) fn to(share: f64, iterations: usize) -> Self {
         Self {
-            iterations: unknowns.max(100),
+            iterations,
             share,
             offset: 0.0,
             floor: 0.0,

@@ -9,12 +9,13 @@
 use std::sync::OnceLock;
 
 use faer::Mat;
+use rayon::prelude::*;
 
 use super::conjugate::{self, Limits, Outcome, dot};
 use super::dense::{Dense, Factor};
 use super::likelihood;
 use super::operator::Multiplier;
-use super::{Penalty, RegressionError, Samples};
+use super::{Method, Penalty, RegressionError, Samples, qr};
 use crate::coefficients::Coefficients;
 use crate::direction::Direction;
 use crate::index;
@@ -52,17 +53,6 @@ pub struct Solution {
     pub coefficients: Coefficients,
     /// Condition number of [√W Y; √penalty], to about ten per cent.
     pub condition: f64,
-}
-
-/// How normal equations are solved.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Method {
-    /// Cholesky for degrees up to 16; above, conjugate gradients, and Cholesky if they fail.
-    Automatic,
-    /// Preconditioned conjugate gradients: O(L³) an iteration, no matrix.
-    Conjugate,
-    /// The dense factor: O(L⁶) flops, 16 (L+1)⁴ bytes.
-    Cholesky,
 }
 
 impl Gram {
@@ -130,38 +120,96 @@ impl Gram {
         penalty: Penalty,
         method: Method,
     ) -> Result<Solution, RegressionError> {
+        let coefficients = self.coefficients(samples, penalty, method)?;
+        Ok(Solution {
+            condition: self.condition(penalty)?,
+            coefficients,
+        })
+    }
+
+    /// β alone, without its condition.
+    pub fn coefficients(
+        &self,
+        samples: Samples,
+        penalty: Penalty,
+        method: Method,
+    ) -> Result<Coefficients, RegressionError> {
         penalty.check()?;
-        let unknowns = index::count(self.degree);
-        if penalty.lambda == 0.0 && self.samples < unknowns {
+        if penalty.lambda == 0.0 && self.samples < index::count(self.degree) {
             return Err(self.rank_deficient());
         }
-        let dense_first = match method {
-            Method::Automatic => self.degree <= SMALL_DEGREE,
-            Method::Conjugate => false,
-            Method::Cholesky => true,
-        };
-        if !dense_first {
-            match self.refine(samples, penalty, &|right, share| {
-                self.iterate(penalty, right, None, Limits::to(share, unknowns))
-                    .map(|outcome| outcome.solution)
-            }) {
-                Ok(beta) => {
-                    let condition = self.condition(penalty);
-                    return Ok(self.solution(beta, condition));
+        match method {
+            Method::Automatic if self.prefers_dense() => self.by_factor(samples, penalty),
+            Method::Automatic => match self.by_iteration(samples, penalty) {
+                Err(RegressionError::NotConverged { .. }) if self.degree <= DENSE_DEGREE => {
+                    self.by_factor(samples, penalty)
                 }
-                Err(failed) if method == Method::Conjugate || self.degree > DENSE_DEGREE => {
-                    return Err(failed);
-                }
-                Err(_) => {}
+                found => found,
+            },
+            Method::Conjugate => self.by_iteration(samples, penalty),
+            Method::Cholesky => self.by_factor(samples, penalty),
+            Method::Qr => qr::fit_weighted(samples, self.weights.as_deref(), self.degree, penalty),
+        }
+    }
+
+    /// Condition number of [√W Y; √penalty], to about ten per cent, by power and inverse iteration.
+    pub fn condition(&self, penalty: Penalty) -> Result<f64, RegressionError> {
+        penalty.check()?;
+        let start: Vec<f64> = (0..index::count(self.degree))
+            .map(|i| 1.0 + 0.5 * (i as f64 * 1.618).sin())
+            .collect();
+        let largest = eigenvalue(start.clone(), 12, |x| Ok(self.apply(penalty, x)))?;
+        let inverse = if self.prefers_dense() {
+            let factor = self.factor(penalty)?;
+            eigenvalue(start, 6, |x| Ok(factor.solve(x)))
+        } else {
+            let limits = Limits::to(1e-2, self.most_iterations());
+            let inverse = eigenvalue(start.clone(), 6, |x| {
+                self.iterate(penalty, x, None, limits).map(|o| o.solution)
+            });
+            if inverse.is_err() && self.degree <= DENSE_DEGREE {
+                let factor = self.factor(penalty)?;
+                eigenvalue(start, 6, |x| Ok(factor.solve(x)))
+            } else {
+                inverse
             }
-        }
+        }?;
+        Ok((largest * inverse).sqrt())
+    }
+
+    fn by_iteration(
+        &self,
+        samples: Samples,
+        penalty: Penalty,
+    ) -> Result<Coefficients, RegressionError> {
+        self.refine(samples, penalty, &|right, share| {
+            let limits = Limits::to(share, self.most_iterations());
+            self.iterate(penalty, right, None, limits)
+                .map(|outcome| outcome.solution)
+        })
+    }
+
+    fn by_factor(
+        &self,
+        samples: Samples,
+        penalty: Penalty,
+    ) -> Result<Coefficients, RegressionError> {
         let factor = self.factor(penalty)?;
-        let beta = self.refine(samples, penalty, &|right, _| Ok(factor.solve(right)))?;
-        let condition = self.condition_by(penalty, |right| factor.solve(right));
-        if beta.iter().any(|b| !b.is_finite()) {
-            return Err(self.rank_deficient());
+        self.refine(samples, penalty, &|right, _| Ok(factor.solve(right)))
+    }
+
+    /// Whether the factor is at hand or cheap.
+    fn prefers_dense(&self) -> bool {
+        self.degree <= SMALL_DEGREE || self.dense.get().is_some()
+    }
+
+    /// What a factor costs in iterations, where one can be had.
+    fn most_iterations(&self) -> usize {
+        if self.degree <= DENSE_DEGREE {
+            200 + index::count(self.degree) / 5
+        } else {
+            5000
         }
-        Ok(self.solution(beta, condition))
     }
 
     /// (YᵀWY + penalty)⁻¹, rows and columns at positions l²+l+m: the covariance of β for samples
@@ -203,8 +251,7 @@ impl Gram {
         penalty: Penalty,
         rights: &[(&[f64], Option<&[f64]>, Limits)],
     ) -> Result<Vec<Outcome>, RegressionError> {
-        if self.degree > SMALL_DEGREE && self.dense.get().is_none() {
-            use rayon::prelude::*;
+        if !self.prefers_dense() {
             let found: Result<Vec<Outcome>, RegressionError> = rights
                 .par_iter()
                 .map(|&(right, start, limits)| self.iterate(penalty, right, start, limits))
@@ -236,12 +283,10 @@ impl Gram {
         start: Option<&[f64]>,
         limits: Limits,
     ) -> Result<Outcome, RegressionError> {
-        let share = |l: usize| {
-            let mean_density = self.density.as_slice()[0] / (4.0 * std::f64::consts::PI).sqrt();
-            1.0 / (1.0 + penalty.weight(l) / mean_density)
-        };
         let mean_density = self.density.as_slice()[0] / (4.0 * std::f64::consts::PI).sqrt();
-        let shares: Vec<f64> = (0..=self.degree).map(share).collect();
+        let shares: Vec<f64> = (0..=self.degree)
+            .map(|l| 1.0 / (1.0 + penalty.weight(l) / mean_density))
+            .collect();
         let scaled = |x: &[f64]| -> Vec<f64> {
             x.iter()
                 .enumerate()
@@ -285,7 +330,7 @@ impl Gram {
         samples: Samples,
         penalty: Penalty,
         solve: &dyn Fn(&[f64], f64) -> Result<Vec<f64>, RegressionError>,
-    ) -> Result<Vec<f64>, RegressionError> {
+    ) -> Result<Coefficients, RegressionError> {
         let mut beta = solve(&self.right, 1e-18)?;
         let fitted = self.points.evaluate(samples.directions, &beta);
         let mut residual: Vec<f64> = samples
@@ -307,7 +352,8 @@ impl Gram {
         for (b, step) in beta.iter_mut().zip(solve(&gradient, 1e-10)?) {
             *b += step;
         }
-        Ok(beta)
+        beta[0] += self.mean * (4.0 * std::f64::consts::PI).sqrt();
+        Coefficients::new(beta).map_err(|_| self.rank_deficient())
     }
 
     fn factor(&self, penalty: Penalty) -> Result<Factor<'_>, RegressionError> {
@@ -321,42 +367,6 @@ impl Gram {
         } else {
             Err(self.rank_deficient())
         }
-    }
-
-    fn solution(&self, beta: Vec<f64>, condition: f64) -> Solution {
-        let mut coefficients = Coefficients::zeros(self.degree);
-        coefficients.as_mut_slice().copy_from_slice(&beta);
-        coefficients.as_mut_slice()[0] += self.mean * (4.0 * std::f64::consts::PI).sqrt();
-        Solution {
-            coefficients,
-            condition,
-        }
-    }
-
-    fn condition(&self, penalty: Penalty) -> f64 {
-        let limits = Limits {
-            iterations: 10 * index::count(self.degree),
-            share: 1e-2,
-            offset: 0.0,
-            floor: 0.0,
-        };
-        self.condition_by(penalty, |right| {
-            match self.iterate(penalty, right, None, limits) {
-                Ok(outcome) => outcome.solution,
-                Err(_) => right.to_vec(),
-            }
-        })
-    }
-
-    /// √(largest / smallest eigenvalue) of YᵀWY + penalty, by power and inverse iteration.
-    fn condition_by(&self, penalty: Penalty, solve: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
-        let size = index::count(self.degree);
-        let start: Vec<f64> = (0..size)
-            .map(|i| 1.0 + 0.5 * (i as f64 * 1.618).sin())
-            .collect();
-        let largest = eigenvalue(start.clone(), 12, |x| self.apply(penalty, x));
-        let inverse = eigenvalue(start, 6, solve);
-        (largest * inverse).sqrt()
     }
 
     fn rank_deficient(&self) -> RegressionError {
@@ -459,16 +469,19 @@ fn add_penalty(penalty: Penalty, x: &[f64], image: &mut [f64]) {
 }
 
 /// Largest eigenvalue of a positive operator by power iteration, from below.
-fn eigenvalue(mut x: Vec<f64>, steps: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
+fn eigenvalue(
+    mut x: Vec<f64>,
+    steps: usize,
+    apply: impl Fn(&[f64]) -> Result<Vec<f64>, RegressionError>,
+) -> Result<f64, RegressionError> {
     let mut value = 0.0;
     for _ in 0..steps {
         let length = dot(&x, &x).sqrt();
         for x in &mut x {
             *x /= length;
         }
-        let image = apply(&x);
-        value = dot(&image, &image).sqrt();
-        x = image;
+        x = apply(&x)?;
+        value = dot(&x, &x).sqrt();
     }
-    value
+    Ok(value)
 }

@@ -19,19 +19,25 @@ pub fn fit(
     degree: usize,
     penalty: Penalty,
 ) -> Result<Coefficients, RegressionError> {
+    fit_weighted(samples, None, degree, penalty)
+}
+
+/// [`fit`] with a weight ≥ 0 a sample: Σᵢ wᵢ (h(pᵢ) − fᵢ)².
+pub(super) fn fit_weighted(
+    samples: Samples,
+    weights: Option<&[f64]>,
+    degree: usize,
+    penalty: Penalty,
+) -> Result<Coefficients, RegressionError> {
     samples.check()?;
-    if !(penalty.lambda >= 0.0 && penalty.lambda.is_finite()) {
-        return Err(RegressionError::Penalty {
-            lambda: penalty.lambda,
-        });
-    }
+    penalty.check()?;
     let unknowns = index::count(degree);
     let rank_deficient = RegressionError::RankDeficient {
         samples: samples.values.len(),
         coefficients: unknowns,
         degree,
     };
-    let (matrix, right) = system(samples, degree, penalty);
+    let (matrix, right) = system(samples, weights, degree, penalty);
     if matrix.nrows() < unknowns {
         return Err(rank_deficient);
     }
@@ -47,7 +53,12 @@ pub fn fit(
 }
 
 /// Rows Y_{lm}(pᵢ), then the penalty's rows; and the right-hand side.
-fn system(samples: Samples, degree: usize, penalty: Penalty) -> (Mat<f64>, Mat<f64>) {
+fn system(
+    samples: Samples,
+    weights: Option<&[f64]>,
+    degree: usize,
+    penalty: Penalty,
+) -> (Mat<f64>, Mat<f64>) {
     let (points, unknowns) = (samples.values.len(), index::count(degree));
     let extra = if penalty.lambda > 0.0 { unknowns } else { 0 };
     let basis = Basis::new(degree);
@@ -57,10 +68,11 @@ fn system(samples: Samples, degree: usize, penalty: Penalty) -> (Mat<f64>, Mat<f
     let mut right = Mat::zeros(points + extra, 1);
     for (i, (p, f)) in samples.directions.iter().zip(samples.values).enumerate() {
         basis.values(p, &mut work, &mut row);
+        let root = weights.map_or(1.0, |w| w[i].sqrt());
         for (j, y) in row.iter().enumerate() {
-            matrix[(i, j)] = *y;
+            matrix[(i, j)] = root * y;
         }
-        right[(i, 0)] = *f;
+        right[(i, 0)] = root * f;
     }
     for j in 0..extra {
         let (l, _) = index::degree_order(j);

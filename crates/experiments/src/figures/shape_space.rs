@@ -1,0 +1,131 @@
+//! Fig. 4: the surfaces, and the space that they live in.
+
+use report::{
+    Axis, Block, Chart, Item, Lines, Mark, Points, Scene, SceneCell, SceneGrid, Section, Series,
+};
+
+use super::section;
+use super::surfaces::surface;
+use crate::pipeline::FittedSet;
+use crate::sections::shape_space::{Place, ShapeSpace};
+
+/// The surfaces, and the scaling in two and three dimensions.
+pub fn figures(set: &FittedSet, found: &ShapeSpace) -> Vec<Section> {
+    vec![
+        section(
+            "Objects",
+            "Surfaces fitted to the clouds, all to one scale.",
+            vec![Block::SceneGrid(grid(set))],
+        ),
+        section(
+            "Shape space",
+            "Classical scaling of the distances between β vectors, in millimetres.",
+            vec![Block::Scene(scene(found)), Block::Chart(plane(found))],
+        ),
+    ]
+}
+
+fn grid(set: &FittedSet) -> SceneGrid {
+    let cell = |o: &crate::pipeline::FittedObject| SceneCell {
+        label: format!(
+            "{} {}",
+            o.id(),
+            if o.id() == o.object.name {
+                ""
+            } else {
+                &o.object.name
+            }
+        ),
+        items: vec![surface(o.shape())],
+    };
+    SceneGrid {
+        title: "Smooth surfaces".to_owned(),
+        columns: 4,
+        cells: set.objects.iter().map(cell).collect(),
+        ..SceneGrid::default()
+    }
+}
+
+/// Places of one kind, and their labels.
+fn of_kind<'a>(found: &'a ShapeSpace, kind: &'a str) -> impl Iterator<Item = &'a Place> {
+    found.places.iter().filter(move |p| p.kind == kind)
+}
+
+/// Ways of deformation: a name, and the places on it with the ends.
+fn ways(found: &ShapeSpace) -> Vec<(String, Vec<&Place>)> {
+    let mut ways: Vec<(String, Vec<&Place>)> = Vec::new();
+    for place in of_kind(found, "deformation") {
+        let name = place.label.split(" at ").next().unwrap_or_default();
+        match ways.last_mut() {
+            Some((last, places)) if last == name => places.push(place),
+            _ => ways.push((name.to_owned(), vec![place])),
+        }
+    }
+    for (name, places) in &mut ways {
+        let end = |id: &str| of_kind(found, "object").find(|p| p.label == id);
+        if let Some((from, to)) = name.split_once('→') {
+            places.splice(0..0, end(from));
+            places.extend(end(to));
+        }
+    }
+    ways
+}
+
+fn scene(found: &ShapeSpace) -> Scene {
+    let at = |p: &&Place| std::array::from_fn(|k| 1e3 * p.coordinates[k]);
+    let points = |name: &str, kind: &str, labelled: bool, size_px| {
+        Item::Points(Points {
+            name: name.to_owned(),
+            points: of_kind(found, kind).map(|p| at(&p)).collect(),
+            labels: of_kind(found, kind)
+                .filter(|_| labelled)
+                .map(|p| p.label.clone())
+                .collect(),
+            size_px,
+        })
+    };
+    let mut items = vec![points("objects", "object", true, 7)];
+    items.push(points("spheres", "sphere", false, 4));
+    for (name, places) in ways(found) {
+        items.push(Item::Lines(Lines {
+            name,
+            points: places.iter().map(at).collect(),
+        }));
+    }
+    items.retain(|item| !matches!(item, Item::Points(p) if p.points.is_empty()));
+    Scene {
+        title: "Three dimensions".to_owned(),
+        axes: Some(["1 / mm", "2 / mm", "3 / mm"].map(str::to_owned)),
+        items,
+        ..Scene::default()
+    }
+}
+
+fn plane(found: &ShapeSpace) -> Chart {
+    let at = |p: &&Place| [1e3 * p.coordinates[0], 1e3 * p.coordinates[1]];
+    let mut objects = Series::points(
+        "objects",
+        of_kind(found, "object").map(|p| at(&p)).collect(),
+    );
+    objects.labels = found.ids.clone();
+    let spheres = Series::points(
+        "spheres",
+        of_kind(found, "sphere").map(|p| at(&p)).collect(),
+    );
+    let mut series = vec![objects, spheres];
+    for (name, places) in ways(found) {
+        series.push(Series {
+            mark: Mark::Line,
+            ..Series::points(name, places.iter().map(at).collect())
+        });
+    }
+    series.retain(|s| !s.points.is_empty());
+    Chart {
+        title: "Two dimensions".to_owned(),
+        x: Axis::linear("1 / mm"),
+        y: Axis::linear("2 / mm"),
+        series,
+        diagonal: false,
+        equal_scale: true,
+    }
+}

@@ -1,0 +1,89 @@
+//! Fig. 9 and the first page: quality before and after transfers, and one grasp on its way.
+
+use report::{Axis, BarSeries, Bars, Block, Chart, SceneCell, SceneGrid, Section, Series};
+use shape::RadialShape;
+use sph::Direction;
+
+use super::section;
+use super::surfaces::grasp_cell;
+use crate::sections::transfer::{Carried, Count};
+
+/// One grasp on its way, as it is to be drawn.
+pub struct DrawnTransfer {
+    /// From where to where.
+    pub title: String,
+    /// Surfaces with the contacts as they leave them, and the quality.
+    pub stations: Vec<(RadialShape, Vec<Direction>, f64)>,
+}
+
+/// Quality before and after, unstable transfers by source, one transfer.
+pub fn figures(
+    carried: &[Carried],
+    counts: &[Count],
+    drawn: Option<&DrawnTransfer>,
+) -> Vec<Section> {
+    let sources = counts.iter().filter(|c| c.from != "all");
+    let chart = |title: &str, pick: fn(&Carried) -> f64| {
+        let series = |c: &Count| {
+            let of = carried.iter().filter(|t| t.from == c.from);
+            Series::points(
+                format!("from {}", c.from),
+                of.map(|t| [t.initial, pick(t)]).collect(),
+            )
+        };
+        Block::Chart(Chart {
+            title: title.to_owned(),
+            x: Axis::linear("Q on the source"),
+            y: Axis::linear("Q on the target"),
+            series: sources
+                .clone()
+                .map(series)
+                .filter(|s| !s.points.is_empty())
+                .collect(),
+            diagonal: true,
+            equal_scale: true,
+        })
+    };
+    let quality = vec![
+        chart("The paper's transfer", |t| t.last),
+        chart("The naive transfer: θ and φ kept", |t| t.naive),
+        Block::Bars(unstable(&sources.clone().collect::<Vec<_>>())),
+    ];
+    let way = drawn.map(|d| Block::SceneGrid(grid(d)));
+    vec![
+        section("Quality", "", quality),
+        section("One transfer", "", way.into_iter().collect()),
+    ]
+}
+
+fn unstable(sources: &[&Count]) -> Bars {
+    let series = |name: &str, pick: fn(&Count) -> usize| BarSeries {
+        name: name.to_owned(),
+        values: sources.iter().map(|c| pick(c) as f64).collect(),
+    };
+    Bars {
+        title: "Transfers that end below Q = 0.01".to_owned(),
+        x_label: "source".to_owned(),
+        y_label: "transfers".to_owned(),
+        categories: sources.iter().map(|c| c.from.clone()).collect(),
+        series: vec![
+            series("the paper's transfer, here", |c| c.unstable),
+            series("the naive transfer, here", |c| c.unstable_naive),
+            series("the paper", |c| c.unstable_in_paper.unwrap_or(0)),
+        ],
+    }
+}
+
+fn grid(drawn: &DrawnTransfer) -> SceneGrid {
+    let last = drawn.stations.len().saturating_sub(1).max(1) as f64;
+    let cell = |(k, (shape, contacts, quality)): (usize, &(RadialShape, Vec<Direction>, f64))| -> SceneCell {
+        let t = k as f64 / last;
+        grasp_cell(format!("t = {t:.1}, Q = {quality:.2}"), shape, contacts)
+    };
+    SceneGrid {
+        title: drawn.title.clone(),
+        columns: 4,
+        cells: drawn.stations.iter().enumerate().map(cell).collect(),
+        ..SceneGrid::default()
+    }
+}

@@ -1,0 +1,174 @@
+//! Fits that samples which contradict their neighbours do not spoil.
+
+use super::{Fitted, RegressionError, Samples, Settings};
+use crate::direction::Direction;
+use crate::scattered::Scattered;
+
+/// How samples lose weight: full weight up to `full` deviations from their neighbours, none from
+/// `none` deviations on, falling linearly in between (a redescending loss).
+///
+/// A deviation is 1.4826 times the median absolute difference of the residuals in the sample's
+/// cell from the cell's median, at least that of all samples. Since it is judged within a cell, an
+/// edge or a part that degree L cannot follow, where whole neighbourhoods lie off the fit, keeps its
+/// weight; a stray point does not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Robust {
+    /// Deviations up to which a sample counts in full.
+    pub full: f64,
+    /// Deviations from which on it does not count.
+    pub none: f64,
+    /// Most repetitions of the fit.
+    pub rounds: usize,
+}
+
+impl Default for Robust {
+    /// 5 and 8 deviations: samples with normal noise keep all their weight, and cost no second fit.
+    fn default() -> Self {
+        Self {
+            full: 5.0,
+            none: 8.0,
+            rounds: 6,
+        }
+    }
+}
+
+/// Least members of a cell.
+const CELL: usize = 16;
+/// Change of any weight below which the rounds end.
+const SETTLED: f64 = 0.05;
+
+/// Reweighted least squares; each round chooses the penalty anew when it is automatic.
+pub(super) fn fit(
+    samples: Samples,
+    settings: &Settings,
+    robust: &Robust,
+) -> Result<Fitted, RegressionError> {
+    let plain = Settings {
+        robust: None,
+        ..*settings
+    };
+    let mut fitted = super::fit(samples, &plain)?;
+    let cells = cells(samples.directions);
+    let points = Scattered::new(samples.directions);
+    let given = |i: usize| settings.weights.map_or(1.0, |w| w[i]);
+    let mut factors = vec![1.0; samples.values.len()];
+    for round in 1..=robust.rounds {
+        let heights = points.evaluate(&fitted.coefficients);
+        let residuals: Vec<f64> = samples.values.iter().zip(&heights).map(|(f, h)| f - h).collect();
+        let next = weigh(&residuals, &cells, robust);
+        let change = next.iter().zip(&factors).map(|(a, b)| (a - b).abs());
+        if change.fold(0.0, f64::max) <= SETTLED {
+            break;
+        }
+        factors = next;
+        let weights: Vec<f64> = factors.iter().enumerate().map(|(i, f)| f * given(i)).collect();
+        let reweighted = Settings {
+            weights: Some(&weights),
+            ..plain
+        };
+        fitted = super::fit(samples, &reweighted)?;
+        fitted.rounds = round;
+    }
+    Ok(fitted)
+}
+
+/// The weight of every sample, from the residuals in its cell.
+fn weigh(residuals: &[f64], cells: &[Vec<u32>], robust: &Robust) -> Vec<f64> {
+    let all: Vec<f64> = residuals.to_vec();
+    let (_, least_deviation) = centre_and_deviation(all);
+    let mut weights = vec![1.0; residuals.len()];
+    for cell in cells {
+        let members = cell.iter().map(|&i| residuals[i as usize]).collect();
+        let (centre, deviation) = centre_and_deviation(members);
+        let deviation = deviation.max(least_deviation);
+        for &i in cell {
+            let off = (residuals[i as usize] - centre).abs();
+            // Exact data have deviation zero; nothing contradicts them but a finite difference.
+            if off > robust.full * deviation {
+                let beyond = (robust.none * deviation - off) / ((robust.none - robust.full) * deviation);
+                weights[i as usize] = if beyond.is_finite() { beyond.max(0.0) } else { 0.0 };
+            }
+        }
+    }
+    weights
+}
+
+/// Median, and 1.4826 times the median absolute difference from it.
+fn centre_and_deviation(mut values: Vec<f64>) -> (f64, f64) {
+    let middle = values.len() / 2;
+    let centre = *values.select_nth_unstable_by(middle, f64::total_cmp).1;
+    for v in &mut values {
+        *v = (*v - centre).abs();
+    }
+    (centre, 1.4826 * *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// Groups of neighbouring directions, all of at least [`CELL`] members if there are so many.
+///
+/// Directions are halved along the longest side of their box until a half would be too small.
+fn cells(directions: &[Direction]) -> Vec<Vec<u32>> {
+    let mut done = Vec::new();
+    let mut open = vec![(0..directions.len() as u32).collect::<Vec<u32>>()];
+    while let Some(mut group) = open.pop() {
+        if group.len() < 2 * CELL {
+            done.push(group);
+            continue;
+        }
+        let axis = longest_side(directions, &group);
+        let middle = group.len() / 2;
+        group.select_nth_unstable_by(middle, |&a, &b| {
+            directions[a as usize][axis].total_cmp(&directions[b as usize][axis])
+        });
+        open.push(group.split_off(middle));
+        open.push(group);
+    }
+    done
+}
+
+fn longest_side(directions: &[Direction], group: &[u32]) -> usize {
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
+    for &i in group {
+        for axis in 0..3 {
+            let x = directions[i as usize][axis];
+            low[axis] = low[axis].min(x);
+            high[axis] = high[axis].max(x);
+        }
+    }
+    let side = |axis: usize| high[axis] - low[axis];
+    (0..3).fold(0, |best, axis| if side(axis) > side(best) { axis } else { best })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::direction::even_directions;
+
+    #[test]
+    fn cells_hold_every_direction_once() {
+        let directions = even_directions(1000);
+        let cells = cells(&directions);
+        let mut seen = vec![0; 1000];
+        for cell in &cells {
+            assert!(cell.len() >= CELL && cell.len() < 2 * CELL);
+            for &i in cell {
+                seen[i as usize] += 1;
+            }
+        }
+        assert!(seen.iter().all(|&n| n == 1));
+    }
+
+    #[test]
+    fn only_what_contradicts_its_neighbours_loses_weight() {
+        let directions = even_directions(2000);
+        let cells = cells(&directions);
+        let mut residuals: Vec<f64> = (0..2000)
+            .map(|i| 1e-3 * (i as f64 * 12.9898).sin() + if directions[i].z > 0.9 { 0.1 } else { 0.0 })
+            .collect();
+        residuals[700] = 0.5;
+        let weights = weigh(&residuals, &cells, &Robust::default());
+        assert_eq!(weights[700], 0.0);
+        let lost = weights.iter().filter(|&&w| w < 1.0).count();
+        assert!(lost < 40, "{lost}");
+    }
+}
