@@ -75,6 +75,12 @@ pub enum ExperimentError {
         /// What the system says.
         reason: std::io::Error,
     },
+    /// A page was refused.
+    #[error(transparent)]
+    Report(#[from] report::ReportError),
+    /// A surface is not in M^rad.
+    #[error(transparent)]
+    Radial(#[from] shape::RadialError),
     /// The library could not be put into bytes.
     #[error(transparent)]
     Record(#[from] record::EnvelopeError),
@@ -92,6 +98,7 @@ impl ExperimentError {
         match self {
             Self::Folder { .. } | Self::TooFewObjects { .. } | Self::Cloud(_) => 3,
             Self::Output { .. }
+            | Self::Report(_)
             | Self::Record(_)
             | Self::Json(_)
             | Self::Threads(_)

@@ -18,6 +18,8 @@ pub struct Findings {
     pub ours: Value,
     /// The main numbers for people.
     pub table: Table,
+    /// Pictures.
+    pub figures: Vec<report::Section>,
 }
 
 /// Writes bytes to `folder/name` by way of a temporary name, making the folder where needed.

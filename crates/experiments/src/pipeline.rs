@@ -8,7 +8,7 @@ use moduli::Objective;
 use nalgebra::Point3;
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use shape::{Fit, FitSettings, RadialShape};
+use shape::{Fit, FitSettings, RadialField, RadialShape};
 
 use crate::error::ExperimentError;
 use crate::objects::{ObjectCloud, ObjectSource, Objects, Refused};
@@ -22,6 +22,8 @@ pub struct FittedObject {
     pub object: ObjectCloud,
     /// Its surface.
     pub fit: Fit,
+    /// The same surface, prepared for ascents.
+    pub surface: RadialField,
 }
 
 impl FittedObject {
@@ -134,7 +136,11 @@ pub fn fit_all(objects: Objects, settings: &FitSettings) -> FittedSet {
         .clouds
         .into_par_iter()
         .map(|object| match shape::fit::fit(&object.cloud, settings) {
-            Ok(fit) => Ok(FittedObject { object, fit }),
+            Ok(fit) => Ok(FittedObject {
+                object,
+                surface: RadialField::new(fit.shape.clone()),
+                fit,
+            }),
             Err(error) => Err(Refused {
                 id: object.id,
                 reason: error.to_string(),

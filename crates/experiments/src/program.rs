@@ -22,7 +22,7 @@ pub fn main(name: &'static str, about: &'static str, section: Section) -> ExitCo
         Ok(args) => args,
         Err(error) => error.exit(),
     };
-    match execute(name, &args, section) {
+    match execute(name, about, &args, section) {
         Ok(text) => {
             // A reader that has gone away is no failure of the experiment.
             let _ = writeln!(std::io::stdout(), "{text}");
@@ -38,8 +38,14 @@ pub fn fail(name: &str, error: &ExperimentError) -> ExitCode {
     ExitCode::from(error.exit_code())
 }
 
-/// Runs a section as the arguments say and writes its JSON; the text is the table for people.
-pub fn execute(name: &str, args: &Args, section: Section) -> Result<String, ExperimentError> {
+/// Runs a section as the arguments say and writes its JSON and its page of pictures; the text is the
+/// table for people.
+pub fn execute(
+    name: &str,
+    about: &str,
+    args: &Args,
+    section: Section,
+) -> Result<String, ExperimentError> {
     let start = Instant::now();
     let progress = |what: &str| {
         if !args.quiet {
@@ -76,6 +82,24 @@ pub fn execute(name: &str, args: &Args, section: Section) -> Result<String, Expe
         &args.out,
         &format!("{name}.json"),
         &serde_json::to_vec_pretty(&value)?,
+    )?;
+    let mut sections = vec![findings.table.section()];
+    sections.extend(findings.figures);
+    let page = report::Page {
+        title: name.to_owned(),
+        intro: format!(
+            "{about}.\n\nScale {}, seed {}, objects {}, convention {}.",
+            args.scale.name(),
+            args.seed,
+            args.objects,
+            args.convention.name
+        ),
+        sections,
+    };
+    write(
+        &args.out,
+        &format!("{name}.html"),
+        page.to_html()?.as_bytes(),
     )?;
     let mut text = findings.table.to_string();
     for refused in findings.objects["refused"].as_array().into_iter().flatten() {

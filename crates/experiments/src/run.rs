@@ -21,6 +21,11 @@ pub enum Scale {
 }
 
 impl Scale {
+    /// As on the command line.
+    pub fn name(self) -> &'static str {
+        self.pick("small", "full")
+    }
+
     /// The value for this scale.
     pub fn pick<T>(self, small: T, full: T) -> T {
         match self {
@@ -86,6 +91,8 @@ pub enum Purpose {
     Halves = 3,
     /// Noise on coefficients, and contacts.
     Noise = 4,
+    /// The same, in pictures.
+    Drawn = 5,
 }
 
 /// The generator of one purpose for the object (or sphere) of a number.

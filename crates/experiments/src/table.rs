@@ -34,6 +34,23 @@ impl Table {
     pub fn note(&mut self, line: impl Into<String>) {
         self.notes.push(line.into());
     }
+
+    /// The same table for a page, as a section with its notes below.
+    pub fn section(&self) -> report::Section {
+        let table = report::Table {
+            title: self.title.clone(),
+            headers: self.header.clone(),
+            rows: self.rows.clone(),
+        };
+        report::Section {
+            heading: "Numbers".to_owned(),
+            text: String::new(),
+            blocks: vec![
+                report::Block::Table(table),
+                report::Block::Text(self.notes.join("\n\n")),
+            ],
+        }
+    }
 }
 
 impl fmt::Display for Table {

@@ -2,11 +2,12 @@
 //!
 //! A line is a grasp: friction, edges (0 for the round cone), tolerance (of the round cone), number
 //! of contacts m, then 3m position, 3m normal and 3 centre coordinates, separated by blanks. Prints
-//! quality, lower and upper a line, then the median over five runs of the microseconds a grasp and
-//! the facets made a grasp.
+//! quality (what the convention prints), lower and upper a line, then the median over five runs of the microseconds a grasp and
+//! the facets made a grasp. With the name of a convention as argument, its own friction, edges and
+//! torque length take the place of the line's (`frogger` then also has its own tangents).
 #![allow(clippy::print_stdout, reason = "a program that prints its result")]
 
-use grasp::{Contact, Convention, Edges, Epsilon, Workspace, epsilon};
+use grasp::{Contact, Convention, Edges, Epsilon, TangentRule, Workspace, epsilon};
 use nalgebra::{Point3, Unit, Vector3};
 use std::error::Error;
 use std::time::Instant;
@@ -17,7 +18,7 @@ struct Case {
     convention: Convention,
 }
 
-fn parse(line: &str) -> Result<Case, Box<dyn Error>> {
+fn parse(line: &str, name: Option<&str>) -> Result<Case, Box<dyn Error>> {
     let numbers: Vec<f64> = line
         .split_whitespace()
         .map(str::parse)
@@ -46,21 +47,26 @@ fn parse(line: &str) -> Result<Case, Box<dyn Error>> {
     } else {
         Edges::Polygon(*edges as usize)
     };
+    let mut convention = Convention::named(name.unwrap_or("unit"))?;
+    match name {
+        None => (convention.friction, convention.edges) = (*friction, edges),
+        Some("frogger") => {
+            convention.tangent = TangentRule::Projected(Vector3::new(1.2, 2.3, 3.4));
+        }
+        Some(_) => {}
+    }
     Ok(Case {
         contacts,
         centre: vectors[2 * count].into(),
-        convention: Convention {
-            friction: *friction,
-            edges,
-            ..Convention::named("unit")?
-        },
+        convention,
     })
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
+    let name = std::env::args().nth(1);
     let cases: Vec<Case> = std::io::stdin()
         .lines()
-        .map(|line| parse(&line?))
+        .map(|line| parse(&line?, name.as_deref()))
         .collect::<Result<_, _>>()?;
     let mut workspace = Workspace::new();
     let mut results: Vec<Epsilon> = Vec::new();
@@ -81,8 +87,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         times.push(start.elapsed().as_secs_f64() * 1e6 / cases.len().max(1) as f64);
     }
-    for e in &results {
-        println!("{:e} {:e} {:e}", e.quality, e.lower, e.upper);
+    for (e, case) in results.iter().zip(&cases) {
+        let printed = e.value(&case.convention);
+        println!("{printed:e} {:e} {:e}", e.lower, e.upper);
     }
     times.sort_by(f64::total_cmp);
     println!(

@@ -1,7 +1,7 @@
 //! Conventions of grasp quality as named values: every system prints another number for one grasp.
 
 use crate::contact::Contact;
-use nalgebra::Point3;
+use nalgebra::{Point3, Unit, UnitVector3, Vector3};
 use thiserror::Error;
 
 /// How long the edges of a friction cone are.
@@ -72,6 +72,33 @@ pub enum Edges {
     },
 }
 
+/// Where the first edge of a pyramid points: quality depends on it, since pyramids have a phase.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TangentRule {
+    /// Along the projection of the coordinate axis least aligned with the normal (`tangent`).
+    LeastAligned,
+    /// Along the projection of a fixed vector; `LeastAligned` where it is parallel to the normal.
+    /// FRoGGeR projects (1.2, 2.3, 3.4).
+    Projected(Vector3<f64>),
+}
+
+impl TangentRule {
+    /// The vector whose projection the tangent is.
+    pub(crate) fn axis(&self, normal: &UnitVector3<f64>) -> Vector3<f64> {
+        match *self {
+            TangentRule::Projected(axis) if normal.cross(&axis).norm() > 1e-6 * axis.norm() => axis,
+            _ => Vector3::ith(normal.iamin(), 1.0),
+        }
+    }
+
+    /// The unit tangent at a normal.
+    pub fn tangent(&self, normal: &UnitVector3<f64>) -> UnitVector3<f64> {
+        let axis = self.axis(normal);
+        let n = normal.into_inner();
+        Unit::new_normalize(axis - n * n.dot(&axis))
+    }
+}
+
 /// Everything that turns contacts into a number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Convention {
@@ -87,6 +114,8 @@ pub struct Convention {
     pub friction: f64,
     /// The representation of the friction cone.
     pub edges: Edges,
+    /// Where the first edge of each pyramid points.
+    pub tangent: TangentRule,
     /// The number printed for a grasp that is not force-closed.
     pub not_closed: f64,
 }
@@ -106,6 +135,9 @@ impl Convention {
     /// - `frogger`: unit edges, metres, object origin, μ = 0.7, four edges, −1 when open.
     /// - `openrave`: unit edges, metres, object origin, μ = 0.4, eight edges.
     /// - `unit`: no scaling at all about the given centre; μ = 1 and eight edges until told.
+    ///
+    /// All begin their edges by `TangentRule::LeastAligned`, so that one file of grasps means one set
+    /// of edges; the systems' own frames differ from it in the phase of the pyramids.
     pub fn named(name: &str) -> Result<Self, UnknownConvention> {
         use CentreRule::{CentreOfMass, CloudMean, Given, ObjectOrigin};
         use EdgeNorm::{UnitLength, UnitNormalComponent};
@@ -137,6 +169,7 @@ impl Convention {
             centre,
             friction,
             edges: Edges::Polygon(edges),
+            tangent: TangentRule::LeastAligned,
             not_closed,
         })
     }
@@ -156,6 +189,11 @@ impl Convention {
                 return Err(ConventionError::Tolerance { value: tolerance });
             }
             _ => {}
+        }
+        if let TangentRule::Projected(axis) = self.tangent
+            && !(axis.iter().all(|x| x.is_finite()) && axis.norm() > 0.0)
+        {
+            return Err(ConventionError::Tangent { axis });
         }
         match self.torque_length {
             TorqueLength::Metres(value) if !(value.is_finite() && value > 0.0) => {
@@ -197,6 +235,12 @@ pub enum ConventionError {
     Tolerance {
         /// The tolerance given.
         value: f64,
+    },
+    /// A tangent rule with a vector that is zero or not finite.
+    #[error("tangent rule: the vector {axis:?} must be finite and not zero")]
+    Tangent {
+        /// The vector given.
+        axis: Vector3<f64>,
     },
     /// A torque length that is not finite and positive (or all contacts lie at the centre).
     #[error("torque length {value}: must be finite and positive")]

@@ -2,7 +2,6 @@
 
 use crate::contact::{self, Contact};
 use crate::convention::{Convention, EdgeNorm};
-use crate::friction::tangent;
 use crate::hull::plane::{V6, add_scaled, dot, norm, scale};
 use crate::hull::support::Support;
 use crate::wrench::WrenchError;
@@ -157,7 +156,7 @@ impl Cone {
             [f.x, f.y, f.z, t.x, t.y, t.z]
         };
         let n = inward_normal.into_inner() * unit;
-        let t = tangent(inward_normal).into_inner();
+        let t = setup.convention.tangent.tangent(inward_normal).into_inner();
         let b = inward_normal.cross(&t);
         let twist = n * (torsion / length);
         Cone {

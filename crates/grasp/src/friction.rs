@@ -1,21 +1,12 @@
 //! Friction cones: the tangent rule and the edges of inscribed pyramids.
 
-use crate::convention::EdgeNorm;
-use nalgebra::{Unit, UnitVector3, Vector3};
+use crate::convention::{EdgeNorm, TangentRule};
+use nalgebra::{UnitVector3, Vector3};
 
 /// The tangent that the edges start from: the normalised projection of the coordinate axis least
 /// aligned with `normal` onto its tangent plane; the lowest axis on ties.
 pub fn tangent(normal: &UnitVector3<f64>) -> UnitVector3<f64> {
-    let n = normal.as_ref();
-    let mut axis = 0;
-    for k in 1..3 {
-        if n[k].abs() < n[axis].abs() {
-            axis = k;
-        }
-    }
-    let mut e = Vector3::zeros();
-    e[axis] = 1.0;
-    Unit::new_normalize(e - n * n[axis])
+    TangentRule::LeastAligned.tangent(normal)
 }
 
 /// The `count` edges f_j = n + μ(cos a_j t + sin a_j n×t), a_j = 2πj/count, from the tangent rule.
@@ -59,6 +50,7 @@ pub(crate) fn angle(j: usize, count: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Unit;
 
     #[test]
     fn tangent_takes_the_lowest_axis_on_ties() {

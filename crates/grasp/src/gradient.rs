@@ -2,7 +2,6 @@
 
 use crate::convention::TorqueLength;
 use crate::finger::Setup;
-use crate::friction::tangent;
 use crate::quality::{ActiveFacet, Carrier};
 use crate::wrench::WrenchError;
 use nalgebra::Vector3;
@@ -10,7 +9,7 @@ use nalgebra::Vector3;
 /// How the edges of a cone turn when its normal does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameRule {
-    /// By the tangent rule (`tangent`): the derivative of the number that `epsilon` returns.
+    /// By the convention's tangent rule: the derivative of the number that `epsilon` returns.
     Tangent,
     /// By parallel transport, without spin about the normal: the derivative for frames that are
     /// carried along a step. The same for round cones.
@@ -88,11 +87,12 @@ fn by_carrier(
     let torsion = (torque - arm.cross(&f) / length).dot(&n);
     let mut normal = g * unit - slip * g.dot(&n) + b * torsion;
     if frame == FrameRule::Tangent {
-        let t = tangent(&contact.inward_normal).into_inner();
+        let rule = &setup.convention.tangent;
+        let t = rule.tangent(&contact.inward_normal).into_inner();
         let side = n.cross(&t);
-        // t comes from the axis e = n (e·n) + t (e·t); turning n by dn spins t by −(e·n)/(e·t) side·dn.
-        let axis = n.iamin();
-        let spin = -n[axis] / t[axis];
+        // t comes from the vector e = n (e·n) + t (e·t); turning n by dn spins t by −(e·n)/(e·t) side·dn.
+        let axis = rule.axis(&contact.inward_normal);
+        let spin = -axis.dot(&n) / axis.dot(&t);
         normal += side * (spin * g.dot(&n.cross(&slip)));
     }
     normal -= n * n.dot(&normal);

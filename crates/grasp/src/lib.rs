@@ -20,7 +20,8 @@ mod wrench;
 pub use closure::{force_closed, wrenches_force_closed};
 pub use contact::{Contact, ContactError, Grasp};
 pub use convention::{
-    CentreRule, Convention, ConventionError, EdgeNorm, Edges, TorqueLength, UnknownConvention,
+    CentreRule, Convention, ConventionError, EdgeNorm, Edges, TangentRule, TorqueLength,
+    UnknownConvention,
 };
 pub use distance::{ContactCounts, distance};
 pub use finger::{Finger, FingerError, Setup};

@@ -42,63 +42,58 @@ pub fn resist(setup: &Setup<'_>, external: &Wrench) -> Result<Resistance, Wrench
     let contacts = setup.contacts.len();
     let cones: Vec<Cone> = (0..contacts).map(|i| Cone::new(setup, i, length)).collect();
     let scales: Vec<f64> = (0..contacts).map(|i| setup.edge_scale(i)).collect();
-    let (count, round) = match setup.convention.edges {
-        Edges::Polygon(count) => (count, false),
-        Edges::Round { .. } => (8, true),
+    let (count, mut rounds) = match setup.convention.edges {
+        Edges::Polygon(count) => (count, 1),
+        Edges::Round { .. } => (8, ROUNDS),
     };
+    let mut columns = corners(&cones, count);
+    loop {
+        rounds -= 1;
+        let outcome = programme(&columns, &scales, external).solve();
+        let (multipliers, optimum) = match &outcome {
+            Outcome::Optimal { multipliers, .. } => (multipliers, true),
+            Outcome::Infeasible { certificate } => (certificate, false),
+            Outcome::Unbounded => return Ok(fails(&[0.0; 6])),
+        };
+        let shortfall = match setup.convention.edges {
+            Edges::Polygon(_) => 0.0,
+            Edges::Round { .. } => price(&cones, &scales, multipliers, &mut columns, optimum),
+        };
+        if shortfall > 1e-9 && rounds > 0 {
+            continue;
+        }
+        return Ok(match outcome {
+            // Scaling the multipliers down until they price every wrench right keeps them a proof.
+            Outcome::Optimal { x, value, .. } => {
+                let bound = value / (1.0 + shortfall);
+                holds(setup, &columns, &x, value, bound, length)
+            }
+            Outcome::Infeasible { certificate } => fails(&certificate),
+            Outcome::Unbounded => fails(&[0.0; 6]),
+        });
+    }
+}
+
+fn fails(certificate: &[f64]) -> Resistance {
+    let proof = Wrench::from_fn(|k, _| -certificate[k]);
+    Resistance::Fails {
+        proof: proof.try_normalize(0.0).unwrap_or(proof),
+    }
+}
+
+/// The corners of all inscribed pyramids, each with its contact.
+fn corners(cones: &[Cone], count: usize) -> Vec<(usize, V6)> {
     let circle: Vec<(f64, f64)> = (0..count)
         .map(|j| {
             let (sin, cos) = angle(j, count).sin_cos();
             (cos, sin)
         })
         .collect();
-    let mut columns: Vec<(usize, V6)> = Vec::new();
+    let mut columns = Vec::new();
     for (i, cone) in cones.iter().enumerate() {
         columns.extend(cone.corners(&circle).map(|w| (i, w)));
     }
-    let mut rounds = if round { ROUNDS } else { 1 };
-    loop {
-        rounds -= 1;
-        let outcome = programme(&columns, &scales, external).solve();
-        match outcome {
-            Outcome::Optimal {
-                x,
-                value,
-                multipliers,
-            } => {
-                let shortfall = if round {
-                    price(&cones, &scales, &multipliers, &mut columns, true)
-                } else {
-                    0.0
-                };
-                if shortfall <= 1e-9 || rounds == 0 {
-                    // Scaling the multipliers down until they price every wrench right keeps them
-                    // a proof.
-                    let bound = value / (1.0 + shortfall);
-                    return Ok(holds(setup, &columns, &x, value, bound, length));
-                }
-            }
-            Outcome::Infeasible { certificate } => {
-                let shortfall = if round {
-                    price(&cones, &scales, &certificate, &mut columns, false)
-                } else {
-                    0.0
-                };
-                if shortfall <= 1e-9 || rounds == 0 {
-                    let proof = Wrench::from_fn(|k, _| -certificate[k]);
-                    return Ok(Resistance::Fails {
-                        proof: proof.normalize(),
-                    });
-                }
-            }
-            // The objective is a normal force and never negative.
-            Outcome::Unbounded => {
-                return Ok(Resistance::Fails {
-                    proof: Wrench::zeros(),
-                });
-            }
-        }
-    }
+    columns
 }
 
 /// min t with Σ α_c w_c = −external and Σ_{c of i} α_c scale_i + slack_i = t for every contact i.

@@ -3,7 +3,7 @@
 use crate::contact::{self, Contact, ContactError};
 use crate::convention::{Convention, ConventionError, Edges};
 use crate::finger::FingerError;
-use crate::friction::{cone_edges_from, tangent};
+use crate::friction::cone_edges_from;
 use nalgebra::{Point3, UnitVector3, Vector3, Vector6};
 use thiserror::Error;
 
@@ -42,7 +42,7 @@ pub fn wrenches_into(
     out: &mut Vec<Wrench>,
 ) -> Result<(), WrenchError> {
     fill(contacts, centre, convention, out, |contact| {
-        tangent(&contacts[contact].inward_normal)
+        convention.tangent.tangent(&contacts[contact].inward_normal)
     })
 }
 

@@ -4,8 +4,8 @@ mod common;
 
 use common::{anywhere, around, generator, in_ball, unit};
 use grasp::{
-    Contact, Convention, EdgeNorm, Edges, Finger, FrameRule, Gradient, Setup, TorqueLength,
-    Workspace, facet_gradient, margin, near_active_facets,
+    Contact, Convention, EdgeNorm, Edges, Finger, FrameRule, Gradient, Setup, TangentRule,
+    TorqueLength, Workspace, facet_gradient, margin, near_active_facets,
 };
 use nalgebra::{Point3, Unit, Vector3};
 
@@ -116,6 +116,9 @@ fn closed_polygons_of_every_kind() {
         let mut convention = unit(0.8, Edges::Polygon(4 + index % 9));
         if index % 2 == 1 {
             convention.edge_norm = EdgeNorm::UnitLength;
+        }
+        if index % 7 == 3 {
+            convention.tangent = TangentRule::Projected(Vector3::new(1.2, 2.3, 3.4));
         }
         if index % 5 == 1 {
             convention.torque_length = TorqueLength::MaxContactDistance;

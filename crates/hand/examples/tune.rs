@@ -4,9 +4,29 @@ fn main() {
     use rand_chacha::rand_core::SeedableRng;
     let root = std::env::var("MODULI_DATA").unwrap();
     let mut spec = hand::SDH_SPEC.to_string();
-    if let Ok(subs) = std::env::var("SUBS") { for pair in subs.split(';') { let (a, b) = pair.split_once("=>").unwrap(); assert!(spec.contains(a), "{a}"); spec = spec.replace(a, b); } }
-    let hand = hand::Hand::new(hand::load_urdf(hand::SDH_URDF).unwrap(), &hand::HandSpec::from_toml(&spec).unwrap()).unwrap();
-    let mut sum = 0; let mut worst = usize::MAX;
+    if let Ok(subs) = std::env::var("SUBS") {
+        for pair in subs.split(';') {
+            let (a, b) = pair.split_once("=>").unwrap();
+            assert!(spec.contains(a), "{a}");
+            spec = spec.replace(a, b);
+        }
+    }
+    if let Ok(f) = std::env::var("SPEC") {
+        spec = std::fs::read_to_string(f).unwrap();
+    }
+    let model = match std::env::var("URDF") {
+        Ok(f) => {
+            let dir = std::path::Path::new(&f).parent().unwrap().to_path_buf();
+            hand::load_urdf_with_meshes(&std::fs::read_to_string(&f).unwrap(), |m| {
+                std::fs::read(dir.join(m))
+            })
+            .unwrap()
+        }
+        Err(_) => hand::load_urdf(hand::SDH_URDF).unwrap(),
+    };
+    let hand = hand::Hand::new(model, &hand::HandSpec::from_toml(&spec).unwrap()).unwrap();
+    let mut sum = 0;
+    let mut worst = usize::MAX;
     let names: Vec<String> = std::env::args().skip(1).collect();
     let poses = std::env::var("POSES")
         .ok()
@@ -71,7 +91,7 @@ fn main() {
                 .filter(|(o, p)| p.preshape == k && matches!(o, hand::Outcome::Stable(_)))
                 .count()
         };
-        let pre = (by_pre(0), by_pre(1));
+        let pre = (by_pre(0), by_pre(1), by_pre(2));
         if std::env::var("BINS").is_ok() {
             let (lo, hi) = hand.standoff();
             let mut bins = vec![[0usize; 3]; 8];
@@ -80,12 +100,20 @@ fn main() {
                 let s = t.norm() - surface.radius(&nalgebra::UnitVector3::new_normalize(t));
                 let b = (((s - lo) / (hi - lo) * 8.0) as usize).min(7);
                 bins[b][0] += 1;
-                if matches!(o, hand::Outcome::Stable(_)) { bins[b][1] += 1; }
+                if matches!(o, hand::Outcome::Stable(_)) {
+                    bins[b][1] += 1;
+                }
             }
-            println!("   {:?}", bins.iter().map(|b| format!("{:.2}", b[1] as f64 / b[0] as f64)).collect::<Vec<_>>());
+            println!(
+                "   {:?}",
+                bins.iter()
+                    .map(|b| format!("{:.2}", b[1] as f64 / b[0] as f64))
+                    .collect::<Vec<_>>()
+            );
         }
         let all = hand::collect(outcomes);
-        sum += all.outcomes.stable; worst = worst.min(all.outcomes.stable);
+        sum += all.outcomes.stable;
+        worst = worst.min(all.outcomes.stable);
         println!(
             "{name}: r {:?} build {build:?} err {:.3} mm; {seconds:.2} s; stable {} {:?} unstable {} {:?} best {:.3} 50th {:.3}",
             surface.radius_bounds(),

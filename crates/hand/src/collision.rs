@@ -8,4 +8,4 @@ mod tree;
 pub use object::{CollisionObject, Gap, ObjectError, Precision};
 pub use piece::GeometryError;
 pub(crate) use piece::{ConvexPiece, LinkShape, check_hull};
-pub(crate) use self_distance::first_close_pair;
+pub(crate) use self_distance::{all_close_pairs, first_close_pair};

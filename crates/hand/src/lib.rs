@@ -5,19 +5,23 @@
 //! and ranks the grasps (paper, Sec. IV-C). The palm frame is the root link's; lengths
 //! in metres, angles in radians.
 
+mod check;
 mod closing;
 mod collision;
 mod contact;
 mod hand;
 mod hand_spec;
 mod kinematics;
+mod least_squares;
 mod mesh_file;
 mod model;
 mod pose_sampling;
+mod reach;
 mod sdh;
 mod synthesis;
 mod urdf;
 
+pub use check::{Finding, Severity, check_hand, hand_meshes};
 pub use closing::{ClosedHand, ClosingRules, Rejection, close_hand};
 pub use collision::{CollisionObject, Gap, GeometryError, ObjectError, Precision};
 pub use contact::{TipContact, tip_contact};
@@ -27,6 +31,7 @@ pub use kinematics::KinematicsError;
 pub use mesh_file::{MeshFileError, mesh_vertices};
 pub use model::{Drive, Geometry, HandModel, Joint, JointKind, Link, LinkGeometry};
 pub use pose_sampling::{HandPose, PoseSampling, aimed};
+pub use reach::{ReachOutcome, ReachParams, Reached, reach_contacts};
 pub use sdh::{LoadError, SDH_SPEC, SDH_URDF, schunk_sdh};
 pub use synthesis::{
     HandGrasp, Outcome, OutcomeCounts, Synthesis, SynthesisError, SynthesisParams, collect,

@@ -2,8 +2,7 @@
 
 use grasp::{Convention, QualityError};
 use nalgebra::Point3;
-use shape::RadialShape;
-use shape::space::{SpaceError, deformation};
+use shape::{DeformationError, RadialField};
 use sph::Direction;
 
 use crate::ascent::{Ascent, MonotoneAscent, PaperAscent, Step};
@@ -17,7 +16,7 @@ pub enum TransferError {
     Quality(#[from] QualityError),
     /// The shapes could not be combined.
     #[error(transparent)]
-    Space(#[from] SpaceError),
+    Deformation(#[from] DeformationError),
 }
 
 /// A grasp that has arrived.
@@ -37,9 +36,9 @@ pub struct Transferred {
 #[derive(Clone, Copy, Debug)]
 pub struct Transfer<'a> {
     /// The known object.
-    pub from: &'a RadialShape,
+    pub from: &'a RadialField,
     /// The target.
-    pub to: &'a RadialShape,
+    pub to: &'a RadialField,
     /// The convention of Q.
     pub convention: &'a Convention,
     /// Origin of the user's frame in the centred frame; matters only to conventions that use it.
@@ -48,7 +47,7 @@ pub struct Transfer<'a> {
 
 impl Transfer<'_> {
     /// Q on a shape along the way.
-    fn objective(&self, on: &RadialShape) -> Objective {
+    fn objective(&self, on: &RadialField) -> Objective {
         Objective::new(self.convention, on, &self.object_origin)
     }
 
@@ -75,7 +74,7 @@ pub struct PaperTransfer {
 
 impl PaperTransfer {
     /// The shapes γ(k/n), k = 0 … n; shared by all grasps of a pair.
-    pub fn stations(&self, transfer: &Transfer) -> Result<Vec<RadialShape>, TransferError> {
+    pub fn stations(&self, transfer: &Transfer) -> Result<Vec<RadialField>, TransferError> {
         stations(transfer, self.intervals)
     }
 
@@ -83,7 +82,7 @@ impl PaperTransfer {
     pub fn carry(
         &self,
         transfer: &Transfer,
-        stations: &[RadialShape],
+        stations: &[RadialField],
         contacts: &[Direction],
         mut trace: impl FnMut(f64, &Step),
     ) -> Result<Transferred, TransferError> {
@@ -131,7 +130,7 @@ impl Default for Continuation {
 
 impl Continuation {
     /// The shapes γ(k/n), k = 0 … n; shared by all grasps of a pair.
-    pub fn stations(&self, transfer: &Transfer) -> Result<Vec<RadialShape>, TransferError> {
+    pub fn stations(&self, transfer: &Transfer) -> Result<Vec<RadialField>, TransferError> {
         stations(transfer, self.intervals)
     }
 
@@ -139,7 +138,7 @@ impl Continuation {
     pub fn carry(
         &self,
         transfer: &Transfer,
-        stations: &[RadialShape],
+        stations: &[RadialField],
         contacts: &[Direction],
         mut trace: impl FnMut(f64, &Step),
     ) -> Result<Transferred, TransferError> {
@@ -171,10 +170,10 @@ impl Continuation {
     }
 }
 
-fn stations(transfer: &Transfer, intervals: usize) -> Result<Vec<RadialShape>, TransferError> {
+fn stations(transfer: &Transfer, intervals: usize) -> Result<Vec<RadialField>, TransferError> {
     let n = intervals.max(1);
     (0..=n)
-        .map(|k| deformation(transfer.from, transfer.to, k as f64 / n as f64))
+        .map(|k| RadialField::deformation(transfer.from, transfer.to, k as f64 / n as f64))
         .collect::<Result<_, _>>()
         .map_err(TransferError::from)
 }
@@ -182,11 +181,11 @@ fn stations(transfer: &Transfer, intervals: usize) -> Result<Vec<RadialShape>, T
 /// Climbs at every station in turn, each from where the one before ended.
 fn carry_over(
     transfer: &Transfer,
-    stations: &[RadialShape],
+    stations: &[RadialField],
     contacts: &[Direction],
     mut climb: impl FnMut(
         f64,
-        &RadialShape,
+        &RadialField,
         &[Direction],
         &mut Objective,
     ) -> Result<Ascent, QualityError>,

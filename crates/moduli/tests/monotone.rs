@@ -8,7 +8,7 @@ use nalgebra::{Point3, Vector3};
 use proptest::prelude::*;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use shape::{RadialShape, Surface};
+use shape::{RadialField, RadialShape, Surface};
 use sph::direction::{retract, tangent_frame};
 use sph::{Coefficients, Direction};
 
@@ -166,14 +166,14 @@ fn the_gradient_by_contacts_agrees_with_differences_also_at_the_poles() {
 fn our_transfer_is_never_below_the_naive_one() {
     let convention = paper();
     for seed in 0..6 {
-        let (from, to) = (lumpy(seed), lumpy(seed + 50));
+        let (from, to) = [lumpy(seed), lumpy(seed + 50)].map(RadialField::new).into();
         let transfer = moduli::transfer::Transfer {
             from: &from,
             to: &to,
             convention: &convention,
             object_origin: Point3::origin(),
         };
-        let start = closed_start(&from, seed);
+        let start = closed_start(from.shape(), seed);
         let scheme = moduli::Continuation::default();
         let stations = scheme.stations(&transfer).unwrap();
         let arrived = scheme

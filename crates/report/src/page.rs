@@ -1,7 +1,5 @@
 //! Pages of headings, text, figures and tables.
 
-use plotly::Plot;
-
 use crate::bars::{Bars, Histogram};
 use crate::chart::Chart;
 use crate::document::{Scripts, document};
@@ -53,15 +51,6 @@ pub enum Block {
     Table(Table),
     /// Paragraphs; blank lines part them.
     Text(String),
-}
-
-/// A figure on its way to the page.
-struct Figure<'a> {
-    title: &'a str,
-    plot: Plot,
-    /// Height over width.
-    shape: f64,
-    kind: Kind,
 }
 
 /// What the style sheet and the script must know of a figure.
@@ -117,65 +106,39 @@ fn block_html(
     place: &str,
     figures: &mut Vec<(String, String)>,
 ) -> Result<String, ReportError> {
-    let figure = match block {
+    let (title, plot, shape, kind) = match block {
         Block::Text(text) => return Ok(text::paragraphs(text)),
         Block::Table(table) => return table.html(place),
-        Block::Chart(chart) => Figure {
-            title: &chart.title,
-            plot: chart.plot(place)?,
-            shape: if chart.equal_scale { 0.8 } else { 0.55 },
-            kind: Kind::Plane,
-        },
-        Block::Bars(bars) => Figure {
-            title: &bars.title,
-            plot: bars.plot(place)?,
-            shape: 0.5,
-            kind: Kind::Plane,
-        },
-        Block::Histogram(histogram) => Figure {
-            title: &histogram.title,
-            plot: histogram.plot(place)?,
-            shape: 0.5,
-            kind: Kind::Plane,
-        },
-        Block::Scene(scene) => Figure {
-            title: &scene.title,
-            plot: scene.plot(place)?,
-            shape: 0.7,
-            kind: Kind::Scene,
-        },
-        Block::SceneGrid(grid) => Figure {
-            title: &grid.title,
-            plot: grid.plot(place)?,
-            shape: grid.shape(),
-            kind: Kind::Grid,
-        },
+        Block::Chart(chart) => {
+            let shape = if chart.equal_scale { 0.8 } else { 0.55 };
+            (&chart.title, chart.plot(place)?, shape, Kind::Plane)
+        }
+        Block::Bars(bars) => (&bars.title, bars.plot(place)?, 0.5, Kind::Plane),
+        Block::Histogram(counts) => (&counts.title, counts.plot(place)?, 0.5, Kind::Plane),
+        Block::Scene(scene) => (&scene.title, scene.plot(place)?, 0.7, Kind::Scene),
+        Block::SceneGrid(grid) => (&grid.title, grid.plot(place)?, grid.shape(), Kind::Grid),
     };
     let id = format!("figure-{}", figures.len());
-    let html = figure.html(&id);
-    figures.push((
-        format!("{id}-data"),
-        trace::with_light(&figure.plot.to_json(), figure.kind == Kind::Grid),
-    ));
-    Ok(html)
+    let json = trace::with_light(&plot.to_json(), kind == Kind::Grid);
+    figures.push((format!("{id}-data"), json));
+    Ok(figure_html(&id, title, shape, kind))
 }
 
-impl Figure<'_> {
-    fn html(&self, id: &str) -> String {
-        let caption = if self.title.is_empty() {
-            String::new()
-        } else {
-            format!("<figcaption>{}</figcaption>", text::html(self.title))
-        };
-        let kind = match self.kind {
-            Kind::Plane => "",
-            Kind::Scene => " three-d",
-            Kind::Grid => " three-d grid",
-        };
-        format!(
-            "<figure>{caption}<div class=\"plot{kind}\" id=\"{id}\" \
-             style=\"aspect-ratio: {:.3}\"></div></figure>\n",
-            1.0 / self.shape
-        )
-    }
+/// The place of a figure; `shape` is height over width.
+fn figure_html(id: &str, title: &str, shape: f64, kind: Kind) -> String {
+    let caption = if title.is_empty() {
+        String::new()
+    } else {
+        format!("<figcaption>{}</figcaption>", text::html(title))
+    };
+    let class = match kind {
+        Kind::Plane => "plot",
+        Kind::Scene => "plot three-d",
+        Kind::Grid => "plot three-d grid",
+    };
+    format!(
+        "<figure>{caption}<div class=\"{class}\" id=\"{id}\" \
+         style=\"aspect-ratio: {:.3}\"></div></figure>\n",
+        1.0 / shape
+    )
 }

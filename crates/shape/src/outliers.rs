@@ -8,11 +8,11 @@ use nalgebra::Point3;
 const FAR: f64 = 4.0;
 /// A median absolute deviation of a normal distribution times this is its standard deviation.
 const NORMAL: f64 = 1.4826;
-/// Side of the cells in which neighbours are counted, in mean distances between points.
-const CELL: f64 = 2.0;
-/// A flat surface has 36 points in the 27 cells around one of its points; a point with fewer than
+/// Neighbours are counted within this many mean distances between points.
+const REACH: f64 = 2.0;
+/// A flat surface has 13 points within reach of one of its points; a point with fewer others than
 /// this is alone.
-const COMPANY: usize = 5;
+const COMPANY: usize = 2;
 
 /// Indices of the points with a large residual and hardly any neighbours.
 ///
@@ -25,27 +25,64 @@ pub(crate) fn stray_points(points: &[Point3<f64>], residuals: &[f64]) -> Vec<usi
     let far: Vec<usize> = (0..points.len())
         .filter(|i| residuals[*i].abs() > limit)
         .collect();
-    if far.is_empty() {
-        return far;
+    lonely(points, far)
+}
+
+/// Indices of the points with hardly any neighbours, wherever the surface is.
+pub(crate) fn lonely_points(points: &[Point3<f64>]) -> Vec<usize> {
+    lonely(points, (0..points.len()).collect())
+}
+
+fn lonely(points: &[Point3<f64>], suspects: Vec<usize>) -> Vec<usize> {
+    if suspects.is_empty() {
+        return suspects;
     }
-    let side = CELL * spacing(points);
-    if !(side > 0.0 && side.is_finite()) {
+    let reach = REACH * spacing(points);
+    if !(reach > 0.0 && reach.is_finite()) {
         return Vec::new();
     }
-    let cell = |p: &Point3<f64>| [p.x, p.y, p.z].map(|x| (x / side).floor() as i64);
-    let mut counts: HashMap<[i64; 3], usize> = HashMap::with_capacity(points.len());
-    for p in points {
-        *counts.entry(cell(p)).or_default() += 1;
+    let boxes = Boxes::new(points, reach);
+    let alone = |i: &usize| boxes.others_near(&points[*i], COMPANY) < COMPANY;
+    suspects.into_iter().filter(alone).collect()
+}
+
+/// Points by the cube they lie in.
+struct Boxes<'a> {
+    points: &'a [Point3<f64>],
+    side: f64,
+    members: HashMap<[i64; 3], Vec<usize>>,
+}
+
+impl<'a> Boxes<'a> {
+    fn new(points: &'a [Point3<f64>], side: f64) -> Self {
+        let mut boxes = Self {
+            points,
+            side,
+            members: HashMap::with_capacity(points.len()),
+        };
+        for (i, p) in points.iter().enumerate() {
+            boxes.members.entry(boxes.key(p)).or_default().push(i);
+        }
+        boxes
     }
-    let around = |[x, y, z]: [i64; 3]| -> usize {
+
+    fn key(&self, p: &Point3<f64>) -> [i64; 3] {
+        [p.x, p.y, p.z].map(|x| (x / self.side).floor() as i64)
+    }
+
+    /// How many points other than p itself lie within one side of it; counts no further than
+    /// `enough`.
+    fn others_near(&self, p: &Point3<f64>, enough: usize) -> usize {
+        let [x, y, z] = self.key(p);
         let near = |k: i64| k.saturating_sub(1)..=k.saturating_add(1);
-        near(x)
-            .flat_map(|x| near(y).flat_map(move |y| near(z).map(move |z| [x, y, z])))
-            .filter_map(|cell| counts.get(&cell))
-            .sum()
-    };
-    let alone = |i: &usize| around(cell(&points[*i])) < COMPANY;
-    far.into_iter().filter(alone).collect()
+        let keys = near(x).flat_map(|x| near(y).flat_map(move |y| near(z).map(move |z| [x, y, z])));
+        keys.filter_map(|key| self.members.get(&key))
+            .flatten()
+            .filter(|i| (self.points[**i] - p).norm() <= self.side)
+            .take(enough + 1)
+            .count()
+            .saturating_sub(1)
+    }
 }
 
 fn median_size(residuals: &[f64]) -> f64 {
@@ -91,6 +128,7 @@ mod tests {
         points[2000] *= 2.0;
         residuals[2000] = -0.05;
         assert_eq!(stray_points(&points, &residuals), [2000]);
+        assert_eq!(lonely_points(&points), [2000]);
     }
 
     #[test]

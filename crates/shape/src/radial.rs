@@ -151,6 +151,34 @@ fn inward_normal(p: &Direction, radius: f64, gradient: &Vector3<f64>) -> (UnitVe
     UnitVector3::new_and_get(gradient - p.into_inner() * radius)
 }
 
+/// Position and inward normal from r and ∇_S r.
+pub(crate) fn contact_of(
+    p: &Direction,
+    radius: f64,
+    gradient: &Vector3<f64>,
+) -> (Point3<f64>, UnitVector3<f64>) {
+    let normal = inward_normal(p, radius, gradient).0;
+    (Point3::from(p.into_inner() * radius), normal)
+}
+
+/// The whole differential from r, ∇_S r and Hess_S r.
+pub(crate) fn differential_of(p: &Direction, jet: &sph::Jet) -> Differential {
+    let direction = p.into_inner();
+    let tangent = Matrix3::identity() - direction * direction.transpose();
+    let (normal, length) = inward_normal(p, jet.value, &jet.gradient);
+    // N = ∇r − r p. Along v: dN = Hess v − p (∇r·v) − p (∇r·v) − r v, the first p from the
+    // turning of the tangent plane, the second from r; n = N/|N|.
+    let raw = jet.hessian - direction * jet.gradient.transpose() * 2.0 - tangent * jet.value;
+    let unit = normal.into_inner();
+    let across = Matrix3::identity() - unit * unit.transpose();
+    Differential {
+        position: Point3::from(direction * jet.value),
+        inward_normal: normal,
+        position_slope: direction * jet.gradient.transpose() + tangent * jet.value,
+        normal_slope: across * raw / length,
+    }
+}
+
 impl Surface for RadialShape {
     fn point(&self, p: &Direction) -> Point3<f64> {
         Point3::from(p.into_inner() * self.radius(p))
@@ -158,30 +186,15 @@ impl Surface for RadialShape {
 
     fn contact(&self, p: &Direction) -> (Point3<f64>, UnitVector3<f64>) {
         let (radius, gradient) = self.radius_and_gradient(p);
-        let normal = inward_normal(p, radius, &gradient).0;
-        (Point3::from(p.into_inner() * radius), normal)
+        contact_of(p, radius, &gradient)
     }
 
     fn differential(&self, p: &Direction) -> Differential {
-        let jet = self.jet(p);
-        let direction = p.into_inner();
-        let tangent = Matrix3::identity() - direction * direction.transpose();
-        let (normal, length) = inward_normal(p, jet.value, &jet.gradient);
-        // N = ∇r − r p. Along v: dN = Hess v − p (∇r·v) − p (∇r·v) − r v, the first p from the
-        // turning of the tangent plane, the second from r; n = N/|N|.
-        let raw = jet.hessian - direction * jet.gradient.transpose() * 2.0 - tangent * jet.value;
-        let unit = normal.into_inner();
-        let across = Matrix3::identity() - unit * unit.transpose();
-        Differential {
-            position: Point3::from(direction * jet.value),
-            inward_normal: normal,
-            position_slope: direction * jet.gradient.transpose() + tangent * jet.value,
-            normal_slope: across * raw / length,
-        }
+        differential_of(p, &self.jet(p))
     }
 
     fn centre_of_mass(&self) -> Point3<f64> {
-        self.mass.centroid
+        self.mass_properties().centroid
     }
 }
 

@@ -4,7 +4,7 @@ use nalgebra::{Point3, Vector3};
 use sph::regression::{Gram, Penalty, RegressionError, Samples};
 use sph::{Coefficients, Direction, batch};
 
-use crate::fit::{FitSettings, PENALTY_POWER};
+use crate::fit::{FitSettings, PENALTY_POWER, choose_penalty};
 use crate::immersion::SphericalError;
 use crate::point_cloud::PointCloud;
 use crate::spherical::SphericalShape;
@@ -64,7 +64,7 @@ pub fn fit_spherical(
                 lambda,
                 power: PENALTY_POWER,
             },
-            None => gram.choose_penalty(PENALTY_POWER)?,
+            None => choose_penalty(&gram, values.len(), settings.degree)?,
         };
         let solution = gram.solve(samples, penalty)?;
         let fitted = batch::evaluate(&solution.coefficients, directions);

@@ -7,14 +7,14 @@ use sph::direction::{retract, tangent_frame};
 use crate::point_cloud::RadialSamples;
 
 /// Points a cell should hold, on the sphere's average, to look for two sheets in it.
-const POINTS_PER_CELL: usize = 48;
+const POINTS_PER_CELL: usize = 96;
 /// Points a cell must hold before anything is said about it.
-const LEAST_POINTS: usize = 16;
+const LEAST_POINTS: usize = 24;
 /// Points a coarser cell should hold, on average; an empty one is then no accident.
 const POINTS_PER_VIEW: usize = 160;
 /// Share of the scatter that two sheets must explain. Two halves of a normal distribution explain
 /// 0.64 of it, of a uniform one 0.75.
-const TWO_SHEETS: f64 = 0.85;
+const TWO_SHEETS: f64 = 0.8;
 /// Each sheet holds at least this share of a cell's points: stray points make no sheet.
 const LEAST_SHARE: f64 = 0.15;
 /// Sheets closer than this part of the radius count as one.
@@ -46,7 +46,7 @@ pub struct StarShape {
 
 /// Looks for two sheets and for holes, cell by cell.
 ///
-/// In each of N/48 cells of equal area the radii are freed from slope and curvature (a quadratic
+/// In each of N/96 cells of equal area the radii are freed from slope and curvature (a quadratic
 /// over the cell) and split in two where the split explains most of what is left. Noise has one
 /// heap and is explained badly, two walls have two heaps; a steep wall is no crossing, since the
 /// quadratic takes its slope. Costs about 100 flops a point.

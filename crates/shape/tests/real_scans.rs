@@ -4,10 +4,11 @@ mod common;
 
 use common::{cloud, index, objects};
 use nalgebra::{DMatrix, DVector, Point3, Vector3};
-use rand::SeedableRng;
 use rand::seq::SliceRandom;
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use shape::fit::{Fit, FitError, FitSettings, fit};
+use rand_distr::{Distribution, Normal};
+use shape::fit::{Fit, FitError, FitSettings, MOST_MULTIPLE, fit};
 use shape::point_cloud::RadialSamples;
 use shape::{PointCloud, star_shape};
 use sph::grid::RingGrid;
@@ -74,11 +75,6 @@ fn main_objects_are_certified_and_close_to_their_points() {
             rms(fit.shape.coefficients(), &samples),
             rms(&plain, &samples),
         );
-        eprintln!(
-            "{name} {ours:.2e} {theirs:.2e} {:?} {}",
-            fit.shape.radius_bounds(),
-            positive_on_a_grid(&plain)
-        );
         assert!((ours - fit.rms).abs() <= 1e-12, "{name}");
         if positive_on_a_grid(&plain) {
             assert!(
@@ -102,7 +98,6 @@ fn main_objects_predict_the_half_that_was_held_out() {
             rms(fit.shape.coefficients(), &held_out),
             rms(&plain, &held_out),
         );
-        eprintln!("{name} held out {ours:.2e} {theirs:.2e}");
         assert!(ours <= theirs, "{name}: {ours:.2e} against {theirs:.2e}");
         if entry.star_once >= 0.99 {
             assert!(ours <= 2e-3, "{name}: {ours:.2e}");
@@ -117,10 +112,32 @@ fn the_measure_tells_open_vessels_from_scans() {
         let star = star_shape(&cloud.seen_from(&cloud.mean()));
         let open = ["mug", "bowl"].contains(&entry.name.as_str());
         if open {
-            assert!(star.multiple >= 0.35, "{}: {}", entry.name, star.multiple);
+            assert!(star.multiple >= 0.6, "{}: {}", entry.name, star.multiple);
             assert!(star.unseen >= 0.05 && !star.crossings.is_empty());
         } else {
-            assert!(star.multiple <= 0.05, "{}: {}", entry.name, star.multiple);
+            assert!(star.multiple <= 0.15, "{}: {}", entry.name, star.multiple);
+        }
+    }
+}
+
+/// The cloud with normal noise of a deviation in metres on every coordinate.
+fn noisy(cloud: &PointCloud, sigma: f64) -> PointCloud {
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let normal = Normal::new(0.0, sigma).unwrap();
+    let mut move_by = || Vector3::from_fn(|_, _| normal.sample(&mut rng));
+    let points = cloud.points().iter().map(|p| p + move_by()).collect();
+    PointCloud::new(points).unwrap()
+}
+
+#[test]
+fn noise_neither_hides_a_mug_nor_makes_one() {
+    for name in ["mug", "sugar_box", "toy_cat", "spray_flask"] {
+        let Some(cloud) = cloud(name) else { return };
+        for sigma in [5e-4, 1e-3, 2e-3] {
+            let cloud = noisy(&cloud, sigma);
+            let star = star_shape(&cloud.seen_from(&cloud.mean()));
+            let refused = star.multiple > MOST_MULTIPLE;
+            assert_eq!(refused, name == "mug", "{name} {sigma}: {}", star.multiple);
         }
     }
 }
@@ -138,14 +155,6 @@ fn hard_objects_are_certified_or_refused() {
             }
             ("mug" | "bowl", other) => panic!("{name}: {other:?}"),
             (_, Ok(fit)) => {
-                eprintln!(
-                    "{name} {:.2e} {:?} unseen {} outliers {} λ {:.1e}",
-                    fit.rms,
-                    fit.shape.radius_bounds(),
-                    fit.star.unseen,
-                    fit.outliers.len(),
-                    fit.lambda
-                );
                 assert_sane(name, &cloud, &fit);
             }
             (_, Err(error)) => panic!("{name}: {error}"),
@@ -179,16 +188,40 @@ fn outliers_do_not_move_the_sugar_box() {
     );
     let reference = fit(&clean, &SETTINGS).unwrap().rms;
     let hits = found.outliers.iter().filter(|i| is_planted[**i]).count();
-    eprintln!(
-        "sugar_box_outliers on clean points {ours:.2e}, sugar_box {reference:.2e}, {hits} of {} found, {} wrong",
-        planted.len(),
-        found.outliers.len() - hits
-    );
     assert!(
         ours <= reference + 1e-3,
         "{ours:.2e} against {reference:.2e}"
     );
     assert!(hits * 10 >= planted.len() * 9 && found.outliers.len() - hits <= 20);
+    // What is left is the half millimetre of noise on the clean points.
+    let alone = fit(&points, &SETTINGS).unwrap();
+    assert!(
+        ours <= 1.02 * alone.rms,
+        "{ours:.2e} against {:.2e}",
+        alone.rms
+    );
+    assert!(alone.outliers.is_empty());
+}
+
+#[test]
+fn a_swarm_of_outliers_is_no_second_sheet() {
+    let Some(cloud) = cloud("sugar_box") else {
+        return;
+    };
+    let mut rng = ChaCha8Rng::seed_from_u64(9);
+    let (centre, size) = (cloud.mean(), cloud.extent() * 1.5);
+    let mut points = noisy(&cloud, 5e-4).points().to_vec();
+    for p in points.iter_mut().step_by(5) {
+        let offset = Vector3::from_fn(|axis, _| size[axis] * (rng.random::<f64>() - 0.5));
+        *p = centre + offset;
+    }
+    let found = fit(&PointCloud::new(points).unwrap(), &SETTINGS).unwrap();
+    let error = rms(
+        found.shape.coefficients(),
+        &cloud.seen_from(&found.centre_in_cloud),
+    );
+    assert!(error <= 1.5e-3, "{error:.2e}");
+    assert!(found.outliers.len() >= 4000, "{}", found.outliers.len());
 }
 
 /// Distances of points from the sphere that fits them best.
@@ -212,8 +245,14 @@ fn four_hundred_points_of_a_ball_make_a_ball() {
     };
     let ball = fit(&cloud, &SETTINGS).unwrap();
     let off = out_of_round(&ball.shape.mesh(60, 120).vertices);
-    eprintln!("out of round {off:.2e}");
     assert!(off <= 1e-3, "{off:.2e}");
+    // And it is the ball that 25,000 points show.
+    let full = common::cloud("baseball").unwrap();
+    let samples = full.seen_from(&ball.centre_in_cloud);
+    let fitted = ball.shape.radii(&samples.directions);
+    let pairs = fitted.iter().zip(&samples.radii);
+    let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(worst <= 1e-3, "{worst:.2e}");
 }
 
 #[test]
@@ -227,10 +266,6 @@ fn one_view_of_a_bottle_stays_close_to_the_whole_bottle() {
     let samples = whole.seen_from(&fit.centre_in_cloud);
     let error = rms(fit.shape.coefficients(), &samples);
     let largest = samples.radii.iter().fold(0.0_f64, |a, b| a.max(*b));
-    eprintln!(
-        "partial: {error:.2e}, {:?}, largest {largest}",
-        fit.shape.radius_bounds()
-    );
     assert!(error <= 0.02, "{error:.2e}");
     assert!(fit.shape.radius_bounds().1 <= 1.25 * largest);
 }

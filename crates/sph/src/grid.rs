@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use crate::coefficients::Coefficients;
 use crate::direction::Direction;
 use crate::legendre::Legendre;
+use crate::transform;
 
 /// Rings of equal z, each with the same evenly spaced longitudes φ_k = 2πk/n.
 #[derive(Clone, Debug)]
@@ -78,9 +79,19 @@ impl RingGrid {
         })
     }
 
-    /// Values of Σ β_{lm} Y_{lm} on the grid. About rings·(2L² + 4·L·longitudes) flops.
+    /// Values of Σ β_{lm} Y_{lm} on the grid.
+    ///
+    /// With more than 2L longitudes whose factors are 2, 3 and 5 (an even number), a fast Fourier
+    /// transform runs along the rings: about rings·(4L² + 10·longitudes·log₂ longitudes) flops.
+    /// Otherwise rings·(2L² + 4·L·longitudes).
     pub fn synthesis(&self, beta: &Coefficients) -> GridValues {
         let degree = beta.degree();
+        if transform::suits(&self.rings, self.longitudes, degree) {
+            return GridValues {
+                longitudes: self.longitudes,
+                values: transform::to_rings(&self.rings, self.longitudes, beta.as_slice()),
+            };
+        }
         let legendre = Legendre::new(degree);
         let turns = Turns::new(self.longitudes);
         let mut column = vec![0.0; degree + 1];
@@ -114,12 +125,20 @@ impl RingGrid {
     ///
     /// Exact when deg f + degree is below the grid's exactness ([`RingGrid::gauss_legendre`]).
     pub fn analysis(&self, values: &GridValues, degree: usize) -> Coefficients {
+        let cell = std::f64::consts::TAU / self.longitudes as f64;
+        if transform::suits(&self.rings, self.longitudes, degree) {
+            let weights: Vec<f64> = self.weights.iter().map(|w| w * cell).collect();
+            let (rings, n) = (&self.rings, self.longitudes);
+            let beta = transform::from_rings(rings, &weights, n, &values.values, degree);
+            let mut out = Coefficients::zeros(degree);
+            out.as_mut_slice().copy_from_slice(&beta);
+            return out;
+        }
         let legendre = Legendre::new(degree);
         let turns = Turns::new(self.longitudes);
         let mut column = vec![0.0; degree + 1];
         let mut beta = Coefficients::zeros(degree);
         let out = beta.as_mut_slice();
-        let cell = std::f64::consts::TAU / self.longitudes as f64;
         for (j, (&(sin, cos), weight)) in self.rings.iter().zip(&self.weights).enumerate() {
             let ring = &values.values[j * self.longitudes..(j + 1) * self.longitudes];
             let mut power = weight * cell;
@@ -244,6 +263,7 @@ mod tests {
     use super::*;
     use crate::basis::Basis;
     use crate::direction::SphericalCoords;
+    use crate::fft::smooth_length;
     use crate::index;
 
     fn some_coefficients(degree: usize) -> Coefficients {
@@ -256,16 +276,19 @@ mod tests {
         let beta = some_coefficients(13);
         let basis = Basis::new(13);
         let mut work = basis.workspace();
-        let grid = RingGrid::equiangular(9, 17);
-        let values = grid.synthesis(&beta);
-        for j in 0..9 {
-            for k in 0..17 {
-                let theta = std::f64::consts::PI * j as f64 / 8.0;
-                let phi = std::f64::consts::TAU * k as f64 / 17.0;
-                let p = SphericalCoords { theta, phi }.direction();
-                let plain = basis.sum(&beta, &p, &mut work);
-                assert!((values.values[j * 17 + k] - plain).abs() <= 1e-12);
+        // 17 longitudes go the plain way, 30 and 32 the fast one.
+        for (rings, longitudes) in [(9, 17), (9, 30), (20, 32)] {
+            let grid = RingGrid::equiangular(rings, longitudes);
+            let values = grid.synthesis(&beta).values;
+            for (p, value) in grid.directions().zip(&values) {
+                assert!((value - basis.sum(&beta, &p, &mut work)).abs() <= 1e-12);
             }
+            let corner = SphericalCoords {
+                theta: std::f64::consts::PI / (rings - 1) as f64,
+                phi: std::f64::consts::TAU / longitudes as f64,
+            };
+            let plain = basis.sum(&beta, &corner.direction(), &mut work);
+            assert!((values[longitudes + 1] - plain).abs() <= 1e-12);
         }
     }
 
@@ -273,9 +296,12 @@ mod tests {
     fn analysis_undoes_synthesis_to_degree_100() {
         for degree in [0, 1, 8, 50, 100] {
             let beta = some_coefficients(degree);
-            let grid = RingGrid::gauss_legendre(degree + 1, 2 * degree + 1);
-            let back = grid.analysis(&grid.synthesis(&beta), degree);
-            assert!(beta.distance(&back) <= 1e-11 * (1.0 + degree as f64));
+            let plain = RingGrid::gauss_legendre(degree + 1, 2 * degree + 1);
+            let fast = RingGrid::gauss_legendre(degree + 1, smooth_length(2 * degree + 2));
+            for grid in [plain, fast] {
+                let back = grid.analysis(&grid.synthesis(&beta), degree);
+                assert!(beta.distance(&back) <= 1e-11 * (1.0 + degree as f64));
+            }
         }
     }
 

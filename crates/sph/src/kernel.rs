@@ -16,8 +16,9 @@ pub(crate) type Taps = [f64; TAPS];
 pub(crate) struct Kernel {
     width: usize,
     beta: f64,
-    /// Coefficients of u^d of every tap, the highest power first.
-    powers: Vec<Taps>,
+    /// Coefficients of u^d of every tap, the highest power first: of φ, φ′ and φ″. The derivatives
+    /// have tables of their own, since differentiating a table loses digits.
+    powers: Vec<[Taps; 3]>,
 }
 
 impl Kernel {
@@ -27,15 +28,14 @@ impl Kernel {
         debug_assert!(width.is_multiple_of(2) && width <= TAPS);
         let beta = std::f64::consts::PI * width as f64 * (1.0 - 0.5 / oversampling);
         let degree = width + 4;
-        let mut powers = vec![[0.0; TAPS]; degree + 1];
+        let mut powers = vec![[[0.0; TAPS]; 3]; degree + 1];
         for tap in 0..width {
             let centre = 0.5 * (width as f64 - 1.0) - tap as f64;
-            let window = |u: f64| {
-                let x = 2.0 * (u + centre) / width as f64;
-                bessel_i0(beta * ((1.0 - x) * (1.0 + x)).max(0.0).sqrt()) / bessel_i0(beta)
-            };
-            for (d, c) in monomials(degree, window).into_iter().enumerate() {
-                powers[degree - d][tap] = c;
+            for part in 0..3 {
+                let window = |u: f64| window_jet(beta, width, u + centre)[part];
+                for (d, c) in monomials(degree, window).into_iter().enumerate() {
+                    powers[degree - d][part][tap] = c;
+                }
             }
         }
         Self {
@@ -58,10 +58,10 @@ impl Kernel {
     /// φ at the taps' distances; u ∈ [−½, ½] is the position past the grid point, less ½.
     #[inline(always)]
     pub(crate) fn weights(&self, u: f64) -> Taps {
-        let mut sum = self.powers[0];
+        let mut sum = self.powers[0][0];
         for power in &self.powers[1..] {
             for k in 0..TAPS {
-                sum[k] = sum[k] * u + power[k];
+                sum[k] = sum[k] * u + power[0][k];
             }
         }
         sum
@@ -70,18 +70,15 @@ impl Kernel {
     /// φ, φ′ and φ″ at the taps' distances, per grid step.
     #[inline(always)]
     pub(crate) fn jets(&self, u: f64) -> [Taps; 3] {
-        let (mut value, mut first, mut half_second) = (self.powers[0], [0.0; TAPS], [0.0; TAPS]);
+        let mut sums = self.powers[0];
         for power in &self.powers[1..] {
-            for k in 0..TAPS {
-                half_second[k] = half_second[k] * u + first[k];
-                first[k] = first[k] * u + value[k];
-                value[k] = value[k] * u + power[k];
+            for part in 0..3 {
+                for k in 0..TAPS {
+                    sums[part][k] = sums[part][k] * u + power[part][k];
+                }
             }
         }
-        for s in &mut half_second {
-            *s *= 2.0;
-        }
-        [value, first, half_second]
+        sums
     }
 
     /// ∫ φ(d) e^{−2πiξd} dd at ξ cycles a grid step, |ξ| below 1 − 1/2σ.
@@ -90,16 +87,37 @@ impl Kernel {
         let root = (self.beta * self.beta - (std::f64::consts::PI * w * frequency).powi(2))
             .max(1e-300)
             .sqrt();
-        w * root.sinh() / (root * bessel_i0(self.beta))
+        w * root.sinh() / (root * bessel(0, self.beta))
     }
 }
 
-/// I₀(x) by its series; all terms are positive.
-fn bessel_i0(x: f64) -> f64 {
+/// φ, φ′ and φ″ at a distance of d grid steps, |d| ≤ w/2.
+///
+/// With x = 2d/w and z = β√(1−x²): dI₀/dx = −β² x I₁(z)/z, d²I₀/dx² = −β² I₁(z)/z + β⁴ x² I₂(z)/z².
+fn window_jet(beta: f64, width: usize, d: f64) -> [f64; 3] {
+    let per_step = 2.0 / width as f64;
+    let x = per_step * d;
+    let z = beta * ((1.0 - x) * (1.0 + x)).max(0.0).sqrt();
+    let square = beta * beta;
+    let (i0, i1, i2) = (bessel(0, z), bessel(1, z), bessel(2, z));
+    let top = bessel(0, beta);
+    [
+        i0 / top,
+        -square * x * i1 / top * per_step,
+        square * (square * x * x * i2 - i1) / top * per_step * per_step,
+    ]
+}
+
+/// I_n(x) / xⁿ by its series; all terms are positive.
+fn bessel(order: usize, x: f64) -> f64 {
     let quarter = 0.25 * x * x;
-    let (mut term, mut sum, mut k) = (1.0, 1.0, 1.0);
+    let mut term = 1.0;
+    for n in 1..=order {
+        term /= 2.0 * n as f64;
+    }
+    let (mut sum, mut k) = (term, 1.0);
     while term > 1e-17 * sum {
-        term *= quarter / (k * k);
+        term *= quarter / (k * (k + order as f64));
         sum += term;
         k += 1.0;
     }
@@ -150,17 +168,32 @@ mod tests {
             let kernel = Kernel::new(width, 2.0);
             for i in 0..=40 {
                 let u = f64::from(i) / 40.0 - 0.5;
-                let taps = kernel.weights(u);
+                let (taps, jets) = (kernel.weights(u), kernel.jets(u));
                 for (tap, weight) in taps.iter().enumerate().take(width) {
                     let d = u + 0.5 * (width as f64 - 1.0) - tap as f64;
-                    let x = 2.0 * d / width as f64;
-                    let root = ((1.0 - x) * (1.0 + x)).max(0.0).sqrt();
-                    let exact = bessel_i0(kernel.beta * root) / bessel_i0(kernel.beta);
+                    let exact = window_jet(kernel.beta, width, d);
                     let allowed = 3e-14 + 10.0_f64.powi(-(width as i32));
-                    assert!((weight - exact).abs() <= allowed, "width {width}");
+                    assert!((weight - exact[0]).abs() <= allowed, "width {width}");
+                    for part in 0..3 {
+                        let error = (jets[part][tap] - exact[part]).abs();
+                        assert!(error <= 10.0 * allowed, "width {width} part {part}");
+                    }
                 }
                 assert!(taps[width..].iter().all(|&w| w == 0.0));
-                assert_eq!(kernel.jets(u)[0], taps);
+                assert_eq!(jets[0], taps);
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_of_the_window_agree_with_differences() {
+        for d in [-3.2, -1.0, 0.0, 0.4, 2.9] {
+            let at = |d: f64| window_jet(20.0, 8, d);
+            let (here, step) = (at(d), 1e-4);
+            let (before, after) = (at(d - step), at(d + step));
+            for part in 0..2 {
+                let difference = (after[part] - before[part]) / (2.0 * step);
+                assert!((difference - here[part + 1]).abs() <= 1e-6);
             }
         }
     }

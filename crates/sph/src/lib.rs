@@ -19,6 +19,7 @@ mod rings;
 pub mod rotation;
 pub mod scattered;
 mod torus;
+mod transform;
 
 pub use basis::{Basis, Harmonic, Jet};
 pub use coefficients::{Coefficients, CoefficientsError};

@@ -24,38 +24,86 @@ pub(crate) struct OrderValues {
     pub(crate) sin: [Lane; 2],
 }
 
-/// The sums over l of one order. `power` is sinᵐθ.
+/// Coefficients order by order: [β_{l,m}, β_{l,−m}] for l = m … L, so that sums over l run through
+/// memory in order. The second of the pair is zero for m = 0.
+pub(crate) fn by_order(beta: &[f64]) -> Vec<[f64; 2]> {
+    let degree = beta.len().isqrt() - 1;
+    let mut out = Vec::with_capacity((degree + 1) * (degree + 2) / 2);
+    for m in 0..=degree {
+        for l in m..=degree {
+            let centre = l * l + l;
+            let sin = if m == 0 { 0.0 } else { beta[centre - m] };
+            out.push([beta[centre + m], sin]);
+        }
+    }
+    out
+}
+
+/// The inverse of [`by_order`]; what stands beside m = 0 is ignored.
+pub(crate) fn by_position(pairs: &[[f64; 2]], degree: usize) -> Vec<f64> {
+    let mut out = vec![0.0; crate::index::count(degree)];
+    let mut pairs = pairs.iter();
+    for m in 0..=degree {
+        for (l, &[cos, sin]) in (m..=degree).zip(&mut pairs) {
+            let centre = l * l + l;
+            out[centre + m] = cos;
+            if m > 0 {
+                out[centre - m] = sin;
+            }
+        }
+    }
+    out
+}
+
+/// The sum of vectors, in their order.
+pub(crate) fn add_up(parts: &[Vec<[f64; 2]>], length: usize) -> Vec<[f64; 2]> {
+    let mut sum = vec![[0.0; 2]; length];
+    for part in parts {
+        for (s, p) in sum.iter_mut().zip(part) {
+            s[0] += p[0];
+            s[1] += p[1];
+        }
+    }
+    sum
+}
+
+/// Where order m begins in [`by_order`].
+#[inline(always)]
+pub(crate) fn order_start(degree: usize, m: usize) -> usize {
+    // Σ_{k<m} (L + 1 − k), written without a negative intermediate.
+    m * (2 * degree + 3 - m) / 2
+}
+
+/// The sums over l of one order. `power` is sinᵐθ; `beta` is ordered as by [`by_order`].
 #[inline(always)]
 pub(crate) fn order_sums(
     legendre: &Legendre,
     m: usize,
     z: &Lane,
     power: &Lane,
-    beta: &[f64],
+    beta: &[[f64; 2]],
 ) -> OrderValues {
+    let start = order_start(legendre.degree(), m);
+    let beta = &beta[start..start + legendre.degree() + 1 - m];
     let (first, steps) = legendre.recurrence(m);
     let mut sums = [[[0.0; LANES]; 2]; 2];
     let (mut before, mut here) = ([0.0; LANES], *power);
     for h in &mut here {
         *h *= first;
     }
-    let mut centre = m * m + m;
-    add_scaled(&mut sums[0], &here, beta[centre + m], beta[centre - m]);
-    let mut l = m + 1;
-    let mut pairs = steps.chunks_exact(2);
-    for pair in &mut pairs {
-        centre += 2 * l;
-        step(&mut before, &mut here, z, pair[0]);
-        add_scaled(&mut sums[1], &before, beta[centre + m], beta[centre - m]);
-        centre += 2 * (l + 1);
-        step(&mut here, &mut before, z, pair[1]);
-        add_scaled(&mut sums[0], &here, beta[centre + m], beta[centre - m]);
-        l += 2;
+    let (lowest, rest) = beta.split_at(1);
+    add_scaled(&mut sums[0], &here, lowest[0]);
+    let mut pairs = steps.chunks_exact(2).zip(rest.chunks_exact(2));
+    for (step_pair, beta) in &mut pairs {
+        step(&mut before, &mut here, z, step_pair[0]);
+        add_scaled(&mut sums[1], &before, beta[0]);
+        step(&mut here, &mut before, z, step_pair[1]);
+        add_scaled(&mut sums[0], &here, beta[1]);
     }
-    if let [last] = pairs.remainder() {
-        centre += 2 * l;
-        step(&mut before, &mut here, z, *last);
-        add_scaled(&mut sums[1], &before, beta[centre + m], beta[centre - m]);
+    if rest.len() % 2 == 1 {
+        let last = rest.len() - 1;
+        step(&mut before, &mut here, z, steps[last]);
+        add_scaled(&mut sums[1], &before, rest[last]);
     }
     let [even, odd] = sums;
     let mut out = OrderValues {
@@ -79,8 +127,10 @@ pub(crate) fn add_order(
     z: &Lane,
     power: &Lane,
     values: &OrderValues,
-    beta: &mut [f64],
+    beta: &mut [[f64; 2]],
 ) {
+    let start = order_start(legendre.degree(), m);
+    let beta = &mut beta[start..start + legendre.degree() + 1 - m];
     let (first, steps) = legendre.recurrence(m);
     let (mut before, mut here) = ([0.0; LANES], *power);
     for h in &mut here {
@@ -93,19 +143,19 @@ pub(crate) fn add_order(
         parts[0][1][k] = values.sin[0][k] + values.sin[1][k];
         parts[1][1][k] = values.sin[0][k] - values.sin[1][k];
     }
-    let mut centre = m * m + m;
-    beta[centre + m] += dot(&parts[0][0], &here);
-    if m > 0 {
-        beta[centre - m] += dot(&parts[0][1], &here);
+    let (lowest, rest) = beta.split_at_mut(1);
+    add_dots(&mut lowest[0], &parts[0], &here);
+    let mut pairs = steps.chunks_exact(2).zip(rest.chunks_exact_mut(2));
+    for (step_pair, beta) in &mut pairs {
+        step(&mut before, &mut here, z, step_pair[0]);
+        add_dots(&mut beta[0], &parts[1], &before);
+        step(&mut here, &mut before, z, step_pair[1]);
+        add_dots(&mut beta[1], &parts[0], &here);
     }
-    for (l, (&constants, parity)) in (m + 1..).zip(steps.iter().zip([1, 0].into_iter().cycle())) {
-        centre += 2 * l;
-        step(&mut before, &mut here, z, constants);
-        std::mem::swap(&mut before, &mut here);
-        beta[centre + m] += dot(&parts[parity][0], &here);
-        if m > 0 {
-            beta[centre - m] += dot(&parts[parity][1], &here);
-        }
+    if rest.len() % 2 == 1 {
+        let last = rest.len() - 1;
+        step(&mut before, &mut here, z, steps[last]);
+        add_dots(&mut rest[last], &parts[1], &before);
     }
 }
 
@@ -118,11 +168,17 @@ fn step(before: &mut Lane, here: &mut Lane, z: &Lane, (a, b): (f64, f64)) {
 }
 
 #[inline(always)]
-fn add_scaled(sums: &mut [Lane; 2], values: &Lane, cos: f64, sin: f64) {
+fn add_scaled(sums: &mut [Lane; 2], values: &Lane, [cos, sin]: [f64; 2]) {
     for k in 0..LANES {
         sums[0][k] += values[k] * cos;
         sums[1][k] += values[k] * sin;
     }
+}
+
+#[inline(always)]
+fn add_dots(sums: &mut [f64; 2], parts: &[Lane; 2], values: &Lane) {
+    sums[0] += dot(&parts[0], values);
+    sums[1] += dot(&parts[1], values);
 }
 
 #[inline(always)]
@@ -144,7 +200,7 @@ pub(crate) fn synthesis(
     legendre: &Legendre,
     fft: &Fft,
     pairs: &Pairs,
-    beta: &[f64],
+    beta: &[[f64; 2]],
     values: &mut [Complex],
     scratch: &mut [Complex],
 ) {
@@ -176,7 +232,7 @@ pub(crate) fn add_analysis(
     legendre: &Legendre,
     fft: &Fft,
     pairs: &Pairs,
-    beta: &mut [f64],
+    beta: &mut [[f64; 2]],
     values: &mut [Complex],
     scratch: &mut [Complex],
 ) {

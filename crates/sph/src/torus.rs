@@ -12,7 +12,10 @@ use rayon::prelude::*;
 use crate::fft::{Complex, Fft, LANES, Sign, smooth_length};
 use crate::kernel::{Kernel, TAPS};
 use crate::legendre::Legendre;
-use crate::rings::{Lane, OrderValues, Pairs, add_order, multiply, order_sums};
+use crate::rings::{
+    Lane, OrderValues, Pairs, add_order, add_up, by_order, by_position, multiply, order_start,
+    order_sums,
+};
 
 /// Fine grid values: rows of equal θ from a little before the north pole to a little beyond the
 /// south pole, columns of equal φ with the first and last few repeated.
@@ -158,6 +161,7 @@ impl Torus {
 
     /// c_m − i s_m on the coarse rings, ring after ring; halved for m > 0.
     fn ring_modes(&self, beta: &[f64]) -> Modes {
+        let beta = &by_order(beta);
         let blocks: Vec<Vec<OrderValues>> = self
             .blocks
             .par_iter()
@@ -191,12 +195,12 @@ impl Torus {
 
     /// Adds up rings · P̄_l^m; the adjoint of [`Torus::ring_modes`] without its halving.
     fn sum_rings(&self, rings: &Modes) -> Vec<f64> {
-        let count = crate::index::count(self.degree);
+        let count = order_start(self.degree, self.degree + 1);
         let last = self.ring_count() - 1;
-        let parts: Vec<Vec<f64>> = (0..self.blocks.len())
+        let parts: Vec<Vec<[f64; 2]>> = (0..self.blocks.len())
             .into_par_iter()
             .map(|block| {
-                let mut beta = vec![0.0; count];
+                let mut beta = vec![[0.0; 2]; count];
                 let mut values = vec![ZERO_ORDER; self.degree + 1];
                 for (j, north, south) in self.pair_list(last) {
                     if j / LANES != block {
@@ -222,13 +226,7 @@ impl Torus {
                 beta
             })
             .collect();
-        let mut sum = vec![0.0; count];
-        for part in &parts {
-            for (s, p) in sum.iter_mut().zip(part) {
-                *s += p;
-            }
-        }
-        sum
+        by_position(&add_up(&parts, count), self.degree)
     }
 
     /// From coarse rings to fine rows, order by order.
@@ -321,7 +319,7 @@ fn parities(first: usize) -> Lane {
 struct SumDegrees<'a> {
     legendre: &'a Legendre,
     pairs: &'a Pairs,
-    beta: &'a [f64],
+    beta: &'a [[f64; 2]],
 }
 
 impl WithSimd for SumDegrees<'_> {
@@ -343,7 +341,7 @@ struct AddDegrees<'a> {
     legendre: &'a Legendre,
     pairs: &'a Pairs,
     values: &'a [OrderValues],
-    beta: &'a mut [f64],
+    beta: &'a mut [[f64; 2]],
 }
 
 impl WithSimd for AddDegrees<'_> {

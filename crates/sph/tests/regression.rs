@@ -2,7 +2,9 @@
 
 use nalgebra::Vector3;
 use sph::direction::even_directions;
-use sph::regression::{Gram, Penalty, RegressionError, Samples, gram, qr};
+use sph::regression::{
+    Gram, Method, Penalty, RegressionError, Robust, Samples, Settings, fit, gram, qr,
+};
 use sph::{Coefficients, Direction, batch};
 
 /// Directions of points spread by area over an ellipsoid of revolution: dense at the waist.
@@ -162,4 +164,110 @@ fn bad_samples_are_named() {
         ),
         Err(RegressionError::Empty)
     ));
+}
+
+#[test]
+fn outliers_do_not_spoil_a_robust_fit_and_clean_samples_keep_their_weight() {
+    let degree = 20;
+    let beta = truth(degree);
+    let directions = elongated(6000, 2.0);
+    let clean: Vec<f64> = batch::evaluate(&beta, &directions)
+        .iter()
+        .enumerate()
+        .map(|(i, v)| v + noise(i))
+        .collect();
+    let mut spoiled = clean.clone();
+    for i in (0..6000).step_by(37) {
+        spoiled[i] += 0.03 + 0.02 * (i as f64).sin();
+    }
+    let robust = Settings {
+        robust: Some(Robust::default()),
+        ..Settings::of_degree(degree)
+    };
+    let error = |values: &[f64], settings: &Settings| {
+        let samples = Samples {
+            directions: &directions,
+            values,
+        };
+        let fitted = fit(samples, settings).unwrap();
+        (fitted.coefficients.distance(&beta), fitted.rounds)
+    };
+    let (untouched, rounds) = error(&clean, &robust);
+    assert_eq!(rounds, 0);
+    let (spoiled_robust, _) = error(&spoiled, &robust);
+    let (spoiled_plain, _) = error(&spoiled, &Settings::of_degree(degree));
+    assert!(spoiled_robust <= 1.3 * untouched, "{spoiled_robust:.1e} {untouched:.1e}");
+    assert!(spoiled_plain > 3.0 * untouched, "{spoiled_plain:.1e} {untouched:.1e}");
+}
+
+#[test]
+fn every_method_gives_the_same_weighted_fit() {
+    let degree = 18;
+    let directions = elongated(2500, 1.7);
+    let values: Vec<f64> = batch::evaluate(&truth(degree), &directions)
+        .iter()
+        .enumerate()
+        .map(|(i, v)| v + noise(i))
+        .collect();
+    let samples = Samples {
+        directions: &directions,
+        values: &values,
+    };
+    let weights: Vec<f64> = (0..2500).map(|i| 1.0 + 0.9 * f64::from(i).sin()).collect();
+    for lambda in [0.0, 1e-3] {
+        let by = |method: Method| {
+            let settings = Settings {
+                penalty: Some(Penalty { lambda, power: 2 }),
+                weights: Some(&weights),
+                method,
+                ..Settings::of_degree(degree)
+            };
+            fit(samples, &settings).unwrap().coefficients
+        };
+        let reference = by(Method::Qr);
+        for method in [Method::Automatic, Method::Conjugate, Method::Cholesky] {
+            let error = by(method).distance(&reference);
+            assert!(error <= 1e-10 * reference.distance(&Coefficients::zeros(0)), "{method:?}");
+        }
+    }
+    let negative: Vec<f64> = (0..2500).map(|i| if i == 7 { -1.0 } else { 1.0 }).collect();
+    let settings = Settings {
+        weights: Some(&negative),
+        ..Settings::of_degree(degree)
+    };
+    assert!(matches!(
+        fit(samples, &settings),
+        Err(RegressionError::Weight { index: 7, .. })
+    ));
+}
+
+#[test]
+fn the_covariance_inverts_the_normal_equations() {
+    let degree = 6;
+    let directions = elongated(900, 1.5);
+    let values = batch::evaluate(&truth(degree), &directions);
+    let samples = Samples {
+        directions: &directions,
+        values: &values,
+    };
+    let penalty = Penalty {
+        lambda: 0.1,
+        power: 2,
+    };
+    let gram = Gram::new(samples, degree).unwrap();
+    let covariance = gram.covariance(penalty).unwrap();
+    let count = sph::index::count(degree);
+    for j in 0..count {
+        // A column times the normal equations, applied through the points, is a unit vector.
+        let column: Vec<f64> = (0..count).map(|i| covariance[(i, j)]).collect();
+        let column = Coefficients::new(column).unwrap();
+        let fitted = batch::evaluate(&column, &directions);
+        let image = batch::moments(&directions, &fitted, degree);
+        for i in 0..count {
+            let (l, _) = sph::index::degree_order(i);
+            let found = image.as_slice()[i] + penalty.weight(l) * column.as_slice()[i];
+            let expected = if i == j { 1.0 } else { 0.0 };
+            assert!((found - expected).abs() <= 1e-11);
+        }
+    }
 }

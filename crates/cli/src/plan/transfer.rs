@@ -6,7 +6,7 @@ use moduli::point::contacts_on;
 use moduli::transfer::Transfer;
 use rayon::prelude::*;
 use record::{LibraryEntry, LibraryRecord};
-use shape::RadialShape;
+use shape::RadialField;
 use sph::Direction;
 
 use super::{Candidate, Source, Target};
@@ -17,7 +17,7 @@ pub(crate) struct Neighbour<'a> {
     pub(crate) entry: &'a LibraryEntry,
     /// Metres.
     pub(crate) distance: f64,
-    shape: RadialShape,
+    surface: RadialField,
 }
 
 /// The library objects nearest to the target by d (Sec. III-A), the nearest first.
@@ -43,7 +43,7 @@ pub(crate) fn neighbours<'a>(
             Ok(Neighbour {
                 entry,
                 distance,
-                shape: entry.shape.shape().map_err(|e| broken(entry, e))?,
+                surface: RadialField::new(entry.shape.shape().map_err(|e| broken(entry, e))?),
             })
         })
         .collect()
@@ -58,6 +58,7 @@ pub(crate) fn candidates(
     grasps: usize,
     progress: &ProgressBar,
 ) -> Result<Vec<Candidate>, Failure> {
+    let surface = RadialField::new(target.fit.shape.clone());
     let mut jobs = Vec::new();
     for neighbour in neighbours {
         for grasp in neighbour.entry.grasps.iter().take(grasps) {
@@ -73,7 +74,7 @@ pub(crate) fn candidates(
     progress.set_length(jobs.len() as u64);
     jobs.into_par_iter()
         .map(|(neighbour, directions, source_quality)| {
-            let candidate = carry(target, neighbour, &directions, source_quality)?;
+            let candidate = carry(target, &surface, neighbour, &directions, source_quality)?;
             progress.inc(1);
             Ok(candidate)
         })
@@ -82,6 +83,7 @@ pub(crate) fn candidates(
 
 fn carry(
     target: &Target,
+    surface: &RadialField,
     neighbour: &Neighbour,
     directions: &[Direction],
     source_quality: f64,
@@ -90,8 +92,8 @@ fn carry(
         Failure::refused(format!("transfer from {}: {e}", neighbour.entry.id))
     };
     let transfer = Transfer {
-        from: &neighbour.shape,
-        to: &target.fit.shape,
+        from: &neighbour.surface,
+        to: surface,
         convention: &target.convention,
         object_origin: target.object_origin(),
     };
@@ -101,7 +103,7 @@ fn carry(
         .carry(&transfer, &stations, directions, |_, _| {})
         .map_err(failed)?;
     Ok(Candidate {
-        contacts: contacts_on(&target.fit.shape, &arrived.contacts),
+        contacts: contacts_on(surface, &arrived.contacts),
         quality: arrived.quality,
         source: Source::Transfer {
             from: format!("{} {}", neighbour.entry.id, neighbour.entry.name),

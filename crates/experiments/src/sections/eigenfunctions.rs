@@ -9,6 +9,7 @@ use sph::grid::RingGrid;
 use sph::{Basis, Coefficients, Direction, SphericalCoords, index};
 
 use crate::error::ExperimentError;
+use crate::figures;
 use crate::output::Findings;
 use crate::paper;
 use crate::run::Run;
@@ -87,6 +88,7 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
         }),
         ours: serde_json::to_value(&ours)?,
         table,
+        figures: figures::eigenfunctions::figures(&ours)?,
     })
 }
 

@@ -7,6 +7,7 @@ use serde_json::json;
 use sph::Direction;
 
 use crate::error::ExperimentError;
+use crate::figures::{self, gradient_ascent::DrawnClimb};
 use crate::output::Findings;
 use crate::paper;
 use crate::pipeline::{FittedObject, FittedSet, best_grasps, fitted_objects};
@@ -46,7 +47,7 @@ pub fn paper_ascent(steps: usize) -> PaperAscent {
 }
 
 /// One ascent.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Climb {
     /// Q at the start.
     pub initial: f64,
@@ -54,6 +55,9 @@ pub struct Climb {
     pub last: f64,
     /// The largest Q on the way.
     pub highest: f64,
+    /// The contacts at the start.
+    #[serde(skip)]
+    pub start: Vec<Direction>,
     /// Largest angle between where a contact began and where it ended, radians.
     pub moved_rad: f64,
 }
@@ -91,7 +95,7 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
     let plan = Plan::of(run);
     let set = fitted_objects(run, None, 1)?;
     let ours = measure(run, &plan, &set)?;
-    let all: Vec<Climb> = ours.iter().flat_map(|o| o.climbs.iter().copied()).collect();
+    let all: Vec<Climb> = ours.iter().flat_map(|o| o.climbs.iter().cloned()).collect();
     let overall = overall(&all);
     Ok(Findings {
         objects: set.describe(),
@@ -113,6 +117,7 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
             "largest_improvements_initial_final": examples(&all),
             "by_object": ours,
         }),
+        figures: figures::gradient_ascent::figures(&ours, &drawn(run, &plan, &set, &ours)?),
     })
 }
 
@@ -154,7 +159,7 @@ fn climb(
     let mut highest = 0.0_f64;
     let ascent = plan
         .ascent
-        .climb(fitted.shape(), start, &mut objective, |step| {
+        .climb(&fitted.surface, start, &mut objective, |step| {
             highest = highest.max(step.quality);
         })?;
     let moved = start
@@ -165,7 +170,67 @@ fn climb(
         initial: ascent.start_quality,
         last: ascent.quality,
         highest,
+        start: start.to_vec(),
         moved_rad: moved.fold(0.0, f64::max),
+    })
+}
+
+/// The ascents that gained most on four objects and the one that gained least, to be drawn.
+fn drawn<'a>(
+    run: &Run,
+    plan: &Plan,
+    set: &'a FittedSet,
+    found: &[ObjectClimbs],
+) -> Result<Vec<DrawnClimb<'a>>, ExperimentError> {
+    let all: Vec<(&'a FittedObject, &Climb)> = set
+        .objects
+        .iter()
+        .zip(found)
+        .flat_map(|(fitted, of)| of.climbs.iter().map(move |climb| (fitted, climb)))
+        .collect();
+    let by_gain = |a: &&(&FittedObject, &Climb), b: &&(&FittedObject, &Climb)| {
+        let gain = |climb: &Climb| climb.last - climb.initial;
+        gain(a.1).total_cmp(&gain(b.1))
+    };
+    let mut chosen: Vec<(&'a FittedObject, &Climb)> = Vec::new();
+    while chosen.len() < paper::ASCENT_EXAMPLES.len() {
+        let new = |(o, _): &&(&FittedObject, &Climb)| chosen.iter().all(|c| c.0.id() != o.id());
+        let Some(best) = all.iter().filter(new).max_by(by_gain) else {
+            break;
+        };
+        chosen.push(*best);
+    }
+    chosen.extend(all.iter().min_by(by_gain));
+    chosen
+        .into_iter()
+        .map(|(fitted, climb)| draw(run, plan, fitted, climb))
+        .collect()
+}
+
+/// An ascent once more, with every tenth state.
+fn draw<'a>(
+    run: &Run,
+    plan: &Plan,
+    fitted: &'a FittedObject,
+    climb: &Climb,
+) -> Result<DrawnClimb<'a>, ExperimentError> {
+    let mut objective = fitted.objective(&run.convention);
+    let mut states = Vec::new();
+    let mut count = 0;
+    let keep = |step: &moduli::Step| {
+        if count % 10 == 0 {
+            states.push(step.contacts.to_vec());
+        }
+        count += 1;
+    };
+    let end = plan
+        .ascent
+        .climb(&fitted.surface, &climb.start, &mut objective, keep)?;
+    states.push(end.contacts);
+    Ok(DrawnClimb {
+        label: format!("{} Q {:.2} → {:.2}", fitted.id(), climb.initial, climb.last),
+        shape: fitted.shape(),
+        states,
     })
 }
 
@@ -243,7 +308,7 @@ fn table(plan: &Plan, ours: &[ObjectClimbs], overall: &Overall) -> Table {
         let text: Vec<String> = list.iter().map(|(a, b)| format!("{a:.2}→{b:.2}")).collect();
         text.join(", ")
     };
-    let all: Vec<Climb> = ours.iter().flat_map(|o| o.climbs.iter().copied()).collect();
+    let all: Vec<Climb> = ours.iter().flat_map(|o| o.climbs.iter().cloned()).collect();
     table.note(format!(
         "Largest improvements {}; examples of the paper {}",
         pairs(&examples(&all)),

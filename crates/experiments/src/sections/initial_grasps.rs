@@ -5,8 +5,10 @@ use hand::{HandGrasp, OutcomeCounts, Synthesis};
 use record::grasps::ConventionRecord;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
+use sph::Direction;
 
 use crate::error::ExperimentError;
+use crate::figures;
 use crate::output::Findings;
 use crate::paper;
 use crate::pipeline::{FittedObject, FittedSet, fitted_objects, synthesize};
@@ -49,6 +51,9 @@ pub struct ObjectGrasps {
     pub stable_by_preshape: Vec<usize>,
     /// Qualities of G_i, the best 50, best first.
     pub best_qualities: Vec<f64>,
+    /// Contacts of the best grasp.
+    #[serde(skip)]
+    pub best_contacts: Option<Vec<Direction>>,
     /// G_i in short.
     pub best: Option<Summary>,
     /// Ĝ_i, the best 10, in short.
@@ -87,6 +92,7 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
         }),
         table: table(&ours, &conventions),
         ours: json!({ "grasps": ours, "conventions": described }),
+        figures: figures::initial_grasps::figures(&set, &ours),
     })
 }
 
@@ -143,6 +149,7 @@ fn describe(
         stable_of_1400: (stable * paper::HAND_POSES) as f64 / poses.max(1) as f64,
         stable_by_preshape: (0..preshapes).map(of_preshape).collect(),
         best_qualities: first(paper::BEST_GRASPS).to_vec(),
+        best_contacts: found.grasps.first().map(|g| g.directions.clone()),
         best: summary(first(paper::BEST_GRASPS)),
         very_best: summary(first(paper::VERY_BEST_GRASPS)),
         conventions,

@@ -13,6 +13,7 @@ use sph::regression::{Gram, Penalty, RegressionError, Samples};
 use sph::{Coefficients, batch, index};
 
 use crate::error::ExperimentError;
+use crate::figures;
 use crate::objects::{ObjectCloud, Objects};
 use crate::output::Findings;
 use crate::paper;
@@ -69,6 +70,15 @@ pub struct Reconstruction {
     pub in_m_rad: bool,
 }
 
+/// A fit with its surface, where that is in M^rad.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// How well it does.
+    pub record: Reconstruction,
+    /// The surface, seen from the mean of the cloud.
+    pub shape: Option<RadialShape>,
+}
+
 /// Runs the section.
 pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
     let plan = Plan::of(run);
@@ -76,7 +86,8 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
     if let Some(numbers) = &plan.objects {
         objects = objects.select(numbers);
     }
-    let ours = measure(run, &plan, &objects.clouds)?;
+    let fits = measure(run, &plan, &objects.clouds)?;
+    let ours: Vec<&Reconstruction> = fits.iter().map(|f| &f.record).collect();
     let described: Vec<_> = objects
         .clouds
         .iter()
@@ -97,6 +108,7 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
         }),
         table: table(&objects, &ours),
         ours: json!({ "fits": ours }),
+        figures: figures::reconstruction::figures(&objects.clouds, &fits),
     })
 }
 
@@ -105,7 +117,7 @@ pub fn measure(
     run: &Run,
     plan: &Plan,
     objects: &[ObjectCloud],
-) -> Result<Vec<Reconstruction>, ExperimentError> {
+) -> Result<Vec<Fitted>, ExperimentError> {
     let mut all = Vec::new();
     for object in objects {
         run.say(&format!(
@@ -139,7 +151,7 @@ fn fits_at(
     halves: &[PointCloud; 2],
     degree: usize,
     truth_directions: usize,
-) -> Result<Vec<Reconstruction>, ExperimentError> {
+) -> Result<Vec<Fitted>, ExperimentError> {
     let centre = object.cloud.mean();
     let samples = object.cloud.seen_from(&centre);
     let [seen, held_out] = [&halves[0], &halves[1]].map(|half| half.seen_from(&centre));
@@ -157,7 +169,7 @@ fn fits_at(
         let errors = residuals(&beta, &samples);
         let shape = RadialShape::new(beta).ok();
         let distance = |shape| true_distance(object, shape, &centre, truth_directions);
-        fits.push(Reconstruction {
+        let record = Reconstruction {
             id: object.id.clone(),
             degree,
             coefficients: index::count(degree),
@@ -168,7 +180,8 @@ fn fits_at(
             held_out_rms_m,
             true_rms_m: shape.as_ref().and_then(distance),
             in_m_rad: shape.is_some(),
-        });
+        };
+        fits.push(Fitted { record, shape });
     }
     Ok(fits)
 }
@@ -231,7 +244,7 @@ fn true_distance(
     Some(root_mean_square(distances))
 }
 
-fn table(objects: &Objects, fits: &[Reconstruction]) -> Table {
+fn table(objects: &Objects, fits: &[&Reconstruction]) -> Table {
     let mut table = Table::new(
         "Fig. 2: error against L, in mm: plain least squares (as the paper) | with the penalty",
         &[
@@ -256,7 +269,7 @@ fn table(objects: &Objects, fits: &[Reconstruction]) -> Table {
                 let fit = fits
                     .iter()
                     .find(|f| f.id == object.id && f.degree == degree && f.penalised == penalised);
-                cells(fit)
+                cells(fit.copied())
             };
             let head = vec![object.id.clone(), degree.to_string()];
             table.rows.push([head, of(false), of(true)].concat());

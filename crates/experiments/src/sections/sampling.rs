@@ -9,12 +9,16 @@ use serde_json::json;
 use sph::{Coefficients, index};
 
 use crate::error::ExperimentError;
+use crate::figures::{self, sampling::DrawnBand};
 use crate::output::Findings;
 use crate::paper;
 use crate::pipeline::{FittedObject, FittedSet, fitted_objects};
 use crate::run::{Purpose, Run, generator};
 use crate::statistics::{mean, share};
 use crate::table::{Table, millimetres, number, per_cent};
+
+/// Samples drawn of each band.
+const DRAWN: usize = 4;
 
 /// What is computed.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,7 +86,8 @@ struct Sample {
 /// Runs the section.
 pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
     let set = fitted_objects(run, None, 1)?;
-    let ours = measure(run, &Plan::of(run), &set)?;
+    let plan = Plan::of(run);
+    let ours = measure(run, &plan, &set)?;
     let inclusive = |band: Range<usize>| (band.start, band.end - 1);
     Ok(Findings {
         objects: set.describe(),
@@ -95,6 +100,7 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
         }),
         table: table(&ours),
         ours: json!({ "noise": ours }),
+        figures: figures::sampling::figures(&drawn_bands(run, &plan, &set)),
     })
 }
 
@@ -185,6 +191,45 @@ fn collect(name: &'static str, band: &Range<usize>, sigma: f64, samples: &[Sampl
         rms_slope_change: mean_of(|s| s.slope),
         share_force_closed: share(closed, inside),
     }
+}
+
+/// Samples of one object at the least deviation of each band, to be drawn; those that leave M^rad
+/// are passed over.
+fn drawn_bands(run: &Run, plan: &Plan, set: &FittedSet) -> Vec<DrawnBand> {
+    let Some(object) = set.get(paper::DEFORMED_FROM).or(set.objects.last()) else {
+        return Vec::new();
+    };
+    let bands = [
+        (paper::COARSE_BAND, &plan.coarse_sigmas),
+        (paper::FINE_BAND, &plan.fine_sigmas),
+    ];
+    let drawn = bands.into_iter().filter_map(|(band, sigmas)| {
+        let sigma = *sigmas.first()?;
+        let mut rng = generator(run.seed, Purpose::Drawn, band.start);
+        let samples = (0..DRAWN)
+            .filter_map(|_| {
+                perturbed(
+                    object.shape(),
+                    band.clone(),
+                    sigma,
+                    paper::CONTACTS,
+                    &mut rng,
+                )
+                .ok()
+            })
+            .collect();
+        Some(DrawnBand {
+            title: format!(
+                "{}, noise of {} mm on β_{} … β_{}",
+                object.id(),
+                1e3 * sigma,
+                band.start,
+                band.end - 1
+            ),
+            samples,
+        })
+    });
+    drawn.collect()
 }
 
 fn table(noise: &[Noise]) -> Table {

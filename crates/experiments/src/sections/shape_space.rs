@@ -9,6 +9,7 @@ use shape::{PointCloud, RadialShape, space};
 use sph::Coefficients;
 
 use crate::error::ExperimentError;
+use crate::figures;
 use crate::output::Findings;
 use crate::paper;
 use crate::pipeline::{FittedObject, FittedSet, fitted_objects};
@@ -112,6 +113,7 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
         }),
         table: table(&ours),
         ours: serde_json::to_value(&ours)?,
+        figures: figures::shape_space::figures(&set, &ours),
     })
 }
 

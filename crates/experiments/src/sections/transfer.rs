@@ -6,8 +6,10 @@ use moduli::transfer::Transfer;
 use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::json;
+use sph::Direction;
 
 use crate::error::ExperimentError;
+use crate::figures::{self, transfer::DrawnTransfer};
 use crate::output::Findings;
 use crate::paper;
 use crate::pipeline::{FittedObject, FittedSet, best_grasps, fitted_objects};
@@ -87,8 +89,10 @@ pub struct Count {
 pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
     let plan = Plan::of(run);
     let set = fitted_objects(run, plan.objects.as_deref(), 2)?;
-    let carried = measure(run, &plan, &set)?;
+    let grasps = best_grasps(run, &set, plan.poses, plan.grasps)?;
+    let carried = measure(run, &plan, &set, &grasps)?;
     let counts = counts(&set, &carried);
+    let drawn = drawn(run, &plan, &set, &grasps)?;
     let by_source: Vec<_> = paper::UNSTABLE_BY_SOURCE
         .iter()
         .map(|(source, count)| json!({ "from": format!("S{source}"), "unstable": count }))
@@ -115,12 +119,17 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
             "counts": counts,
             "transfers": carried,
         }),
+        figures: figures::transfer::figures(&carried, &counts, drawn.as_ref()),
     })
 }
 
 /// Carries the best hand grasps of every object to every other object.
-pub fn measure(run: &Run, plan: &Plan, set: &FittedSet) -> Result<Vec<Carried>, ExperimentError> {
-    let grasps = best_grasps(run, set, plan.poses, plan.grasps)?;
+pub fn measure(
+    run: &Run,
+    plan: &Plan,
+    set: &FittedSet,
+    grasps: &[Vec<HandGrasp>],
+) -> Result<Vec<Carried>, ExperimentError> {
     let pairs: Vec<(usize, usize)> = (0..set.objects.len())
         .flat_map(|i| (0..set.objects.len()).map(move |j| (i, j)))
         .filter(|(i, j)| i != j)
@@ -142,8 +151,8 @@ fn carry(
     grasps: &[HandGrasp],
 ) -> Result<Vec<Carried>, ExperimentError> {
     let transfer = Transfer {
-        from: from.shape(),
-        to: to.shape(),
+        from: &from.surface,
+        to: &to.surface,
         convention: &run.convention,
         object_origin: to.object_origin(),
     };
@@ -167,6 +176,46 @@ fn carry(
             })
         })
         .collect()
+}
+
+/// The best grasp of the first object that has one on its way to the last object.
+fn drawn(
+    run: &Run,
+    plan: &Plan,
+    set: &FittedSet,
+    grasps: &[Vec<HandGrasp>],
+) -> Result<Option<DrawnTransfer>, ExperimentError> {
+    let mut with_grasps = set.objects.iter().zip(grasps);
+    let first = with_grasps.find_map(|(o, g)| Some((o, g.first()?)));
+    let (Some((from, grasp)), Some(to)) = (first, set.objects.last()) else {
+        return Ok(None);
+    };
+    let transfer = Transfer {
+        from: &from.surface,
+        to: &to.surface,
+        convention: &run.convention,
+        object_origin: to.object_origin(),
+    };
+    let shapes = plan.transfer.stations(&transfer)?;
+    let mut ends: Vec<(f64, Vec<Direction>, f64)> = Vec::new();
+    let keep = |t: f64, step: &moduli::Step| {
+        let state = (t, step.contacts.to_vec(), step.quality);
+        match ends.last_mut() {
+            Some(last) if last.0 == t => *last = state,
+            _ => ends.push(state),
+        }
+    };
+    plan.transfer
+        .carry(&transfer, &shapes, &grasp.directions, keep)?;
+    let stations = shapes
+        .into_iter()
+        .zip(ends)
+        .map(|(surface, (_, contacts, quality))| (surface.shape().clone(), contacts, quality))
+        .collect();
+    Ok(Some(DrawnTransfer {
+        title: format!("{} → {}", from.id(), to.id()),
+        stations,
+    }))
 }
 
 /// Counts by source, and over all.
@@ -223,7 +272,7 @@ fn table(plan: &Plan, counts: &[Count]) -> Table {
             "from",
             "transfers",
             "Q < 0.01",
-            "paper, of 110",
+            "in the paper",
             "naive Q < 0.01",
             "initial",
             "final",
@@ -231,9 +280,14 @@ fn table(plan: &Plan, counts: &[Count]) -> Table {
         ],
     );
     for c in counts {
+        let of = if c.from == "all" {
+            paper::TRANSFERS
+        } else {
+            paper::TRANSFERS_PER_SOURCE
+        };
         let in_paper = c
             .unstable_in_paper
-            .map_or("–".to_owned(), |n| n.to_string());
+            .map_or("–".to_owned(), |n| format!("{n} of {of}"));
         table.row([
             c.from.clone(),
             c.transfers.to_string(),

@@ -98,33 +98,30 @@ impl Polytope {
             self.epoch = 0;
             self.table.clear();
         }
-        for (omitted, opposite) in points.iter().enumerate() {
-            let vertices: [u16; 6] =
-                std::array::from_fn(|i| (if i < omitted { i } else { i + 1 }) as u16);
-            let mut plane = self.plane_through(&vertices);
-            if plane.height(opposite) > 0.0 {
-                plane = plane.flipped();
-            }
-            // Across the ridge that also omits `other` lies the facet that omits `other`.
-            let links = vertices.map(|other| {
-                let other = other as usize;
-                let slot = if omitted < other {
-                    omitted
-                } else {
-                    omitted - 1
-                };
-                Link::new(other as u32, slot)
-            });
-            self.push(Facet {
-                plane,
-                height: 0.0,
-                epoch: 0,
-                vertices,
-                links,
-                settled: false,
-                finished: false,
-            });
+        for omitted in 0..7 {
+            self.start_facet(omitted);
         }
+    }
+
+    /// The facet of the first simplex that omits a vertex.
+    fn start_facet(&mut self, omitted: usize) {
+        let vertices: [u16; 6] =
+            std::array::from_fn(|i| (if i < omitted { i } else { i + 1 }) as u16);
+        let plane = self.direct(&vertices, omitted as u16);
+        // Across the ridge that also omits `other` lies the facet that omits `other`.
+        let links = vertices.map(|other| {
+            let slot = omitted - usize::from(omitted > other as usize);
+            Link::new(u32::from(other), slot)
+        });
+        self.push(Facet {
+            plane,
+            height: 0.0,
+            epoch: 0,
+            vertices,
+            links,
+            settled: false,
+            finished: false,
+        });
     }
 
     /// The facet with the smallest offset.

@@ -61,8 +61,7 @@ impl Search {
                 direction: scale(&point, -1.0 / norm(&point)),
             };
         }
-        let (mut low, mut high) = (0.0_f64, f64::INFINITY);
-        let mut best = Ball::Open { direction: *toward };
+        let mut best = None;
         for relative in LADDER {
             let tolerance = relative * reach;
             let ball = match complete(&self.corral, source, tolerance) {
@@ -72,34 +71,20 @@ impl Search {
                     self.grow(source, tolerance, gap)
                 }
             };
-            let Ball::Closed {
-                lower,
-                upper,
-                direction,
-                facet,
-            } = ball
-            else {
-                return ball;
-            };
             // Every attempt is a proof of its own: their intersection holds too.
-            low = low.max(lower);
-            high = high.min(upper);
-            best = Ball::Closed {
-                lower: low,
-                upper: high,
-                direction,
-                facet,
+            let (low, high) = match (&ball, &best) {
+                (Ball::Open { .. }, _) => return ball,
+                (Ball::Closed { lower, upper, .. }, None) => (*lower, *upper),
+                (Ball::Closed { lower, upper, .. }, Some((low, high, _))) => {
+                    (lower.max(*low), upper.min(*high))
+                }
             };
+            best = Some((low, high, ball));
             if high - low <= gap.max(1e-9 * reach.min(high)) {
                 break;
             }
         }
-        match best {
-            Ball::Closed {
-                lower, direction, ..
-            } if lower <= RELATIVE_TOLERANCE * reach => Ball::Open { direction },
-            _ => best,
-        }
+        conclude(best, RELATIVE_TOLERANCE * reach, toward)
     }
 
     /// Expands the nearest facet until the bounds meet, or until rounding leaves nothing to do.
@@ -170,6 +155,28 @@ impl Search {
             }
         }
         true
+    }
+}
+
+/// The ball of the last attempt with the bounds of all.
+fn conclude(best: Option<(f64, f64, Ball)>, tolerance: f64, toward: &V6) -> Ball {
+    match best {
+        Some((
+            lower,
+            upper,
+            Ball::Closed {
+                direction, facet, ..
+            },
+        )) if lower > tolerance => Ball::Closed {
+            lower,
+            upper,
+            direction,
+            facet,
+        },
+        Some((_, _, Ball::Closed { direction, .. } | Ball::Open { direction })) => {
+            Ball::Open { direction }
+        }
+        None => Ball::Open { direction: *toward },
     }
 }
 

@@ -4,6 +4,7 @@ use nalgebra::{Isometry3, Point3, UnitQuaternion, UnitVector3, Vector3};
 use parry3d_f64::math::{Pose, Vector};
 use parry3d_f64::query;
 use parry3d_f64::shape::{Ball, Capsule, ConvexPolyhedron, Cuboid, Cylinder, Shape, Triangle};
+use shape::TriangleMesh;
 use thiserror::Error;
 
 use crate::model::{Geometry, LinkGeometry};
@@ -183,6 +184,17 @@ impl ConvexPiece {
         from_parry(self.shape().project_local_point(to_parry(p), true).point)
     }
 
+    /// Vertices (piece frame) and triangles, round parts with 24 sides.
+    fn triangles(&self) -> (Vec<Vector>, Vec<[u32; 3]>) {
+        match &self.form {
+            Form::Cuboid(s) => s.to_trimesh(),
+            Form::Cylinder(s) => s.to_trimesh(24),
+            Form::Capsule(s) => s.to_trimesh(24, 12),
+            Form::Ball(s) => s.to_trimesh(24, 12),
+            Form::Hull(s, _) => s.to_trimesh(),
+        }
+    }
+
     /// Distance to any shape of parry that is at rest in the world.
     #[cfg(test)]
     pub(crate) fn shape_distance(
@@ -241,6 +253,51 @@ impl LinkShape {
 
     pub(crate) fn is_empty(&self) -> bool {
         self.pieces.is_empty()
+    }
+
+    /// From the nearest boundary point of any piece to `spot`, both in the frame of the pose.
+    ///
+    /// Zero on the boundary; inside the link it points inwards.
+    pub(crate) fn offset_from_boundary(
+        &self,
+        pose: &Isometry3<f64>,
+        spot: &Point3<f64>,
+    ) -> Vector3<f64> {
+        let offsets = self.pieces.iter().map(|piece| {
+            let placed = pose * piece.link_from_piece;
+            let local = placed.inverse_transform_point(spot).coords;
+            let nearest = piece.shape().project_local_point(to_parry(&local), false);
+            let offset = local - from_parry(nearest.point);
+            let signed = if nearest.is_inside {
+                -offset.norm()
+            } else {
+                offset.norm()
+            };
+            (signed, placed * offset)
+        });
+        offsets
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map_or_else(Vector3::zeros, |(_, offset)| offset)
+    }
+
+    /// All pieces as one mesh in the frame of the pose.
+    pub(crate) fn mesh(&self, pose: &Isometry3<f64>) -> TriangleMesh {
+        let mut mesh = TriangleMesh {
+            vertices: Vec::new(),
+            triangles: Vec::new(),
+        };
+        for piece in &self.pieces {
+            let placed = pose * piece.link_from_piece;
+            let (vertices, triangles) = piece.triangles();
+            let first = mesh.vertices.len() as u32;
+            let moved = vertices
+                .iter()
+                .map(|v| placed * Point3::from(from_parry(*v)));
+            mesh.vertices.extend(moved);
+            mesh.triangles
+                .extend(triangles.iter().map(|t| t.map(|v| v + first)));
+        }
+        mesh
     }
 
     /// A bound on the distance of any point of the link from the link's origin.

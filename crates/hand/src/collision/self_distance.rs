@@ -18,6 +18,18 @@ pub(crate) fn first_close_pair(
     })
 }
 
+/// All tested pairs of links closer than `least`, with their distances.
+pub(crate) fn all_close_pairs(
+    hand: &Hand,
+    poses: &[Isometry3<f64>],
+    least: f64,
+) -> Vec<(usize, usize, f64)> {
+    let pairs = hand.tested_pairs.iter();
+    pairs
+        .filter_map(|&(a, b)| pair_distance_below(hand, poses, a, b, least).map(|d| (a, b, d)))
+        .collect()
+}
+
 /// Distance of two links if it is below `least`.
 fn pair_distance_below(
     hand: &Hand,

@@ -7,7 +7,7 @@ use crate::coefficients::Coefficients;
 use crate::fft::{Complex, Fft, LANES, smooth_length};
 use crate::grid::gauss_legendre;
 use crate::legendre::Legendre;
-use crate::rings::{Pairs, add_analysis, synthesis};
+use crate::rings::{Pairs, add_analysis, add_up, by_order, by_position, synthesis};
 
 /// Pairs of rings that one task owns, in units of [`LANES`]; fixed, so that sums never depend on
 /// the number of threads.
@@ -37,6 +37,7 @@ impl Multiplier {
         let fft = Fft::new(smooth_length(longitudes.max(2 * g.degree() + 1)));
         let n = fft.length();
         let (blocks, weights) = ring_pairs(rings);
+        let coefficients = by_order(g.as_slice());
         let legendre = Legendre::new(g.degree());
         let mut factors = vec![Complex::ZERO; blocks.len() * n];
         for ((pairs, weights), factors) in blocks.iter().zip(&weights).zip(factors.chunks_mut(n)) {
@@ -44,7 +45,7 @@ impl Multiplier {
                 legendre: &legendre,
                 fft: &fft,
                 pairs,
-                beta: g.as_slice(),
+                beta: &coefficients,
                 values: factors,
             });
             let cell = std::f64::consts::TAU / n as f64;
@@ -66,11 +67,12 @@ impl Multiplier {
     /// The product's coefficients. About 6·rings·L² flops and two Fourier transforms a ring.
     pub(super) fn apply(&self, beta: &[f64]) -> Vec<f64> {
         let n = self.fft.length();
+        let beta = &by_order(beta);
         let tasks = self.blocks.par_chunks(BLOCKS_A_TASK);
-        let parts: Vec<Vec<f64>> = tasks
+        let parts: Vec<Vec<[f64; 2]>> = tasks
             .zip(self.factors.par_chunks(BLOCKS_A_TASK * n))
             .map(|(blocks, factors)| {
-                let mut out = vec![0.0; beta.len()];
+                let mut out = vec![[0.0; 2]; beta.len()];
                 Arch::new().dispatch(Apply {
                     operator: self,
                     blocks,
@@ -81,14 +83,7 @@ impl Multiplier {
                 out
             })
             .collect();
-        let mut parts = parts.into_iter();
-        let mut sum = parts.next().unwrap_or_default();
-        for part in parts {
-            for (s, p) in sum.iter_mut().zip(&part) {
-                *s += p;
-            }
-        }
-        sum
+        by_position(&add_up(&parts, beta.len()), self.legendre.degree())
     }
 }
 
@@ -125,7 +120,7 @@ struct Synthesis<'a> {
     legendre: &'a Legendre,
     fft: &'a Fft,
     pairs: &'a Pairs,
-    beta: &'a [f64],
+    beta: &'a [[f64; 2]],
     values: &'a mut [Complex],
 }
 
@@ -150,8 +145,8 @@ struct Apply<'a> {
     operator: &'a Multiplier,
     blocks: &'a [Pairs],
     factors: &'a [Complex],
-    beta: &'a [f64],
-    out: &'a mut [f64],
+    beta: &'a [[f64; 2]],
+    out: &'a mut [[f64; 2]],
 }
 
 impl WithSimd for Apply<'_> {

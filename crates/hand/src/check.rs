@@ -1,0 +1,211 @@
+//! What a user should know about a hand of theirs before it grasps anything.
+
+use std::fmt;
+
+use nalgebra::{Isometry3, Point3, Vector3};
+use shape::TriangleMesh;
+
+use crate::collision::all_close_pairs;
+use crate::hand::{Finger, Hand, Preshape};
+use crate::kinematics::KinematicsError;
+use crate::model::Geometry;
+
+/// How much a finding matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Good to know.
+    Note,
+    /// Probably not meant.
+    Warning,
+    /// No grasp will be found.
+    Error,
+}
+
+/// One thing that was noticed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Finding {
+    /// How much it matters.
+    pub severity: Severity,
+    /// A sentence with names and numbers.
+    pub text: String,
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = match self.severity {
+            Severity::Note => "note",
+            Severity::Warning => "warning",
+            Severity::Error => "error",
+        };
+        write!(f, "{kind}: {}", self.text)
+    }
+}
+
+/// Looks for what would keep a loaded hand from grasping, the gravest first.
+///
+/// `self_clearance` (metres) is the distance that parts must keep from each other. What
+/// is wrong with names and numbers of URDF and spec is an error of [`Hand::new`] already.
+pub fn check_hand(hand: &Hand, self_clearance: f64) -> Result<Vec<Finding>, KinematicsError> {
+    let mut findings = Vec::new();
+    for preshape in hand.preshapes() {
+        let poses = hand.model().root_from_links(&preshape.joints)?;
+        near_parts(hand, preshape, &poses, self_clearance, &mut findings);
+        for finger in hand.fingers() {
+            closing_motion(hand, preshape, finger, &mut findings)?;
+        }
+        reach(hand, preshape, &poses, &mut findings);
+    }
+    geometry(hand, &mut findings);
+    findings.sort_by(|a, b| b.severity.cmp(&a.severity));
+    Ok(findings)
+}
+
+fn add(findings: &mut Vec<Finding>, severity: Severity, text: String) {
+    findings.push(Finding { severity, text });
+}
+
+fn near_parts(
+    hand: &Hand,
+    preshape: &Preshape,
+    poses: &[Isometry3<f64>],
+    least: f64,
+    findings: &mut Vec<Finding>,
+) {
+    let links = hand.model().links();
+    for (a, b, gap) in all_close_pairs(hand, poses, least) {
+        let text = format!(
+            "pre-shape '{}': '{}' and '{}' are {:.1} mm apart, less than {:.1} mm; exempt the pair or open the pre-shape",
+            preshape.name,
+            links[a].name,
+            links[b].name,
+            gap * 1e3,
+            least * 1e3
+        );
+        let moving = |l: usize| hand.fingers().iter().any(|f| f.moving_links.contains(&l));
+        let severity = if moving(a) || moving(b) {
+            Severity::Warning
+        } else {
+            Severity::Error
+        };
+        add(findings, severity, text);
+    }
+}
+
+/// Middle of a finger's tip links in the palm frame.
+fn tip_middle(hand: &Hand, finger: &Finger, poses: &[Isometry3<f64>]) -> Point3<f64> {
+    let sum: Vector3<f64> = finger
+        .tip_links
+        .iter()
+        .map(|&l| (poses[l] * hand.shapes[l].centre).coords)
+        .sum();
+    Point3::from(sum / finger.tip_links.len() as f64)
+}
+
+/// Distance of a point of the palm frame from the line of approach, and its height along it.
+fn from_approach(hand: &Hand, p: &Point3<f64>) -> (f64, f64) {
+    let offset = p - hand.approach_point();
+    let height = offset.dot(&hand.approach_axis());
+    (
+        (offset - hand.approach_axis().into_inner() * height).norm(),
+        height,
+    )
+}
+
+fn closing_motion(
+    hand: &Hand,
+    preshape: &Preshape,
+    finger: &Finger,
+    findings: &mut Vec<Finding>,
+) -> Result<(), KinematicsError> {
+    let model = hand.model();
+    let mut closed = preshape.joints.clone();
+    let mut moves = false;
+    for &(driven, ratio) in &finger.closing {
+        let (lower, upper) = model.joints[model.driven[driven]].limits;
+        let wanted = (closed[driven] + 0.3 * ratio).clamp(lower, upper);
+        moves |= wanted != closed[driven];
+        closed[driven] = wanted;
+    }
+    let place = format!("pre-shape '{}', finger '{}'", preshape.name, finger.name);
+    if !moves {
+        let text = format!("{place}: every closing joint is at its limit, the finger cannot close");
+        add(findings, Severity::Error, text);
+        return Ok(());
+    }
+    let before = tip_middle(hand, finger, &model.root_from_links(&preshape.joints)?);
+    let after = tip_middle(hand, finger, &model.root_from_links(&closed)?);
+    let (far, near) = (
+        from_approach(hand, &before).0,
+        from_approach(hand, &after).0,
+    );
+    if near > far + 1e-3 {
+        let text = format!(
+            "{place}: closing moves the tip away from the line of approach ({:.0} to {:.0} mm); the sign of a ratio may be wrong",
+            far * 1e3,
+            near * 1e3
+        );
+        add(findings, Severity::Warning, text);
+    }
+    Ok(())
+}
+
+fn reach(hand: &Hand, preshape: &Preshape, poses: &[Isometry3<f64>], findings: &mut Vec<Finding>) {
+    let top = hand
+        .fingers()
+        .iter()
+        .flat_map(|f| &f.tip_links)
+        .map(|&l| {
+            let shape = &hand.shapes[l];
+            from_approach(hand, &(poses[l] * shape.centre)).1 + shape.radius
+        })
+        .fold(f64::NEG_INFINITY, f64::max);
+    if hand.standoff().0 > top {
+        let text = format!(
+            "pre-shape '{}': the tips reach {:.0} mm along the approach, but the least stand-off is {:.0} mm; they end before the surface",
+            preshape.name,
+            top * 1e3,
+            hand.standoff().0 * 1e3
+        );
+        add(findings, Severity::Warning, text);
+    }
+}
+
+fn geometry(hand: &Hand, findings: &mut Vec<Finding>) {
+    for (link, shape) in hand.model().links().iter().zip(&hand.shapes) {
+        let hull = |g: &&crate::model::LinkGeometry| matches!(g.geometry, Geometry::Hull { .. });
+        let hulls = link.geometry.iter().filter(hull).count();
+        if hulls > 0 {
+            let text = format!(
+                "link '{}': {hulls} mesh(es) stand in by their convex hulls",
+                link.name
+            );
+            add(findings, Severity::Note, text);
+        }
+        let carries = hand
+            .model()
+            .joints()
+            .iter()
+            .any(|j| hand.model().links()[j.parent].name == link.name);
+        if shape.is_empty() && carries && link.parent_joint.is_some() {
+            let text = format!(
+                "link '{}' carries others but has no collision geometry; nothing keeps it clear",
+                link.name
+            );
+            add(findings, Severity::Note, text);
+        }
+    }
+}
+
+/// The collision geometry of the hand at given joint values, one mesh a link with
+/// geometry, in the palm frame: for pictures.
+pub fn hand_meshes(
+    hand: &Hand,
+    joints: &[f64],
+) -> Result<Vec<(usize, TriangleMesh)>, KinematicsError> {
+    let poses = hand.model().root_from_links(joints)?;
+    let solid = hand.shapes.iter().zip(&poses).enumerate();
+    Ok(solid
+        .filter(|(_, (shape, _))| !shape.is_empty())
+        .map(|(link, (shape, pose))| (link, shape.mesh(pose)))
+        .collect())
+}
