@@ -42,6 +42,7 @@ fn convention(edges: Edges) -> Convention {
         centre: grasp::CentreRule::Given,
         friction: 1.0,
         edges,
+        tangent: grasp::TangentRule::LeastAligned,
         not_closed: 0.0,
     }
 }

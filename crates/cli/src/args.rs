@@ -63,6 +63,9 @@ pub(crate) struct CloudOptions {
     /// Unit of the coordinates in the file.
     #[arg(long, value_enum, default_value_t = Unit::M)]
     pub(crate) unit: Unit,
+    /// Points taken from a mesh, spread by area.
+    #[arg(long, default_value_t = 25_000, value_parser = count_in::<100, 10_000_000>)]
+    pub(crate) samples: usize,
     /// Highest degree of the harmonics.
     #[arg(long, default_value_t = 50, value_parser = count_in::<0, 150>)]
     pub(crate) degree: usize,
@@ -190,6 +193,9 @@ pub(crate) struct GraspOptions {
     /// Hand poses to try afresh.
     #[arg(long, default_value_t = 700, value_parser = count_in::<0, 1_000_000>)]
     pub(crate) poses: usize,
+    /// Starts of the search for a hand that reaches a transferred grasp; 0 for none.
+    #[arg(long, default_value_t = 12, value_parser = count_in::<0, 10_000>)]
+    pub(crate) reach_starts: usize,
     /// Grasps to keep of each kind.
     #[arg(long, default_value_t = 12, value_parser = count_in::<1, 10_000>)]
     pub(crate) keep: usize,

@@ -3,7 +3,10 @@
 use std::path::Path;
 
 use grasp::{Convention, Edges, TorqueLength};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 use record::ShapeRecord;
+use shape::io::{Loaded, Warning};
 use shape::{Fit, FitError, FitSettings, PointCloud};
 
 use crate::args::{CloudOptions, ConventionOptions};
@@ -22,26 +25,27 @@ pub(crate) fn stem(path: &Path) -> String {
 }
 
 /// A cloud in metres, with warnings about what was dropped and about units that look wrong.
-pub(crate) fn cloud(path: &Path, options: &CloudOptions) -> Result<PointCloud, Failure> {
-    let read = shape::io::read_ply(&read(path)?).map_err(|e| Failure::input(path, e))?;
-    if read.dropped > 0 {
-        warn(format!(
-            "{}: {} rows without finite coordinates dropped",
-            path.display(),
-            read.dropped
-        ));
+///
+/// A mesh is sampled by area; the same seed gives the same points.
+pub(crate) fn cloud(path: &Path, options: &CloudOptions, seed: u64) -> Result<PointCloud, Failure> {
+    let loaded = load(path)?.scaled(options.unit.metres());
+    for warning in &loaded.warnings {
+        let hint = match warning {
+            Warning::Unit { .. } => " (--unit mm, cm, m, in)",
+            Warning::Dropped { .. } => "",
+        };
+        warn(format!("{}: {warning}{hint}", path.display()));
     }
-    let cloud = PointCloud::new(read.points)
-        .and_then(|cloud| cloud.scaled(options.unit.metres()))
-        .map_err(|e| Failure::input(path, e))?;
-    let extent = cloud.extent().max();
-    if !(0.005..=2.0).contains(&extent) {
-        warn(format!(
-            "{}: the object is {extent:.4} m across; is the unit right? (--unit mm, cm, m, in)",
-            path.display()
-        ));
-    }
-    Ok(cloud)
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    loaded
+        .cloud(options.samples, &mut rng)
+        .map_err(|e| Failure::input(path, e))
+}
+
+/// A cloud or mesh in the unit of its file.
+pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+    shape::io::read_cloud(&read(path)?, extension).map_err(|e| Failure::input(path, e))
 }
 
 /// Fits a cloud; numerical refusals say what to try.

@@ -1,9 +1,9 @@
 //! The main job: candidates by transfer and by synthesis, ranked.
 
-pub(crate) mod hand_mesh;
 pub(crate) mod library;
 pub(crate) mod page;
 pub(crate) mod ranking;
+pub(crate) mod reach;
 pub(crate) mod synthesis;
 pub(crate) mod transfer;
 
@@ -57,4 +57,6 @@ pub(crate) struct HandPlacement {
     pub(crate) object_from_palm: Isometry3<f64>,
     /// In the order of the hand's driven joints.
     pub(crate) joints: Vec<f64>,
+    /// Largest distance from a contact of this hand to the grasp's own, metres.
+    pub(crate) contact_error: f64,
 }

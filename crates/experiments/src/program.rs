@@ -5,19 +5,21 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use record::grasps::ConventionRecord;
-use serde_json::json;
+use report::{Page, Section};
+use serde_json::{Value, json};
 
 use crate::args::Args;
 use crate::error::ExperimentError;
 use crate::output::{Findings, write};
 use crate::run::{Run, fit_settings};
+use crate::table::Table;
 
 /// A section of the paper as a function.
-pub type Section = fn(&Run) -> Result<Findings, ExperimentError>;
+pub type Experiment = fn(&Run) -> Result<Findings, ExperimentError>;
 
 /// Reads the command line, runs the section on its own pool of threads, writes `OUT/<name>.json`
 /// and prints the table. Exit codes: 0 done, 2 usage, 3 bad input, 4 numerical refusal, 1 else.
-pub fn main(name: &'static str, about: &'static str, section: Section) -> ExitCode {
+pub fn main(name: &'static str, about: &'static str, section: Experiment) -> ExitCode {
     let args = match Args::read(name, about, std::env::args_os()) {
         Ok(args) => args,
         Err(error) => error.exit(),
@@ -44,7 +46,7 @@ pub fn execute(
     name: &str,
     about: &str,
     args: &Args,
-    section: Section,
+    section: Experiment,
 ) -> Result<String, ExperimentError> {
     let start = Instant::now();
     let progress = |what: &str| {
@@ -61,12 +63,13 @@ pub fn execute(
         fit: fit_settings(args.degree, args.lambda),
         progress: &progress,
     };
-    let threads = args.threads.unwrap_or(0);
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
+        .num_threads(args.threads.unwrap_or(0))
         .build()?;
     let findings = pool.install(|| section(&run))?;
     let seconds = start.elapsed().as_secs_f64();
+    let refused = refusals(&findings.objects);
+    let table = findings.table.to_string();
     let value = json!({
         "experiment": name,
         "scale": args.scale,
@@ -78,14 +81,30 @@ pub fn execute(
         "ours": findings.ours,
         "seconds": seconds,
     });
-    let path = write(
-        &args.out,
-        &format!("{name}.json"),
-        &serde_json::to_vec_pretty(&value)?,
-    )?;
-    let mut sections = vec![findings.table.section()];
-    sections.extend(findings.figures);
-    let page = report::Page {
+    let page = page(name, about, args, findings.table, findings.figures).to_html()?;
+    write(&args.out, &format!("{name}.html"), page.as_bytes())?;
+    let bytes = serde_json::to_vec_pretty(&value)?;
+    let path = write(&args.out, &format!("{name}.json"), &bytes)?;
+    Ok(format!(
+        "{table}{refused}{seconds:.1} s, {}",
+        path.display()
+    ))
+}
+
+/// One line for every object that was refused.
+fn refusals(objects: &Value) -> String {
+    let refused = objects["refused"].as_array().into_iter().flatten();
+    let word = |of: &Value, key: &str| of[key].as_str().unwrap_or_default().to_owned();
+    refused
+        .map(|r| format!("refused {}: {}\n", word(r, "id"), word(r, "reason")))
+        .collect()
+}
+
+/// The table and the pictures.
+fn page(name: &str, about: &str, args: &Args, table: Table, figures: Vec<Section>) -> Page {
+    let mut sections = vec![table.section()];
+    sections.extend(figures);
+    Page {
         title: name.to_owned(),
         intro: format!(
             "{about}.\n\nScale {}, seed {}, objects {}, convention {}.",
@@ -95,17 +114,5 @@ pub fn execute(
             args.convention.name
         ),
         sections,
-    };
-    write(
-        &args.out,
-        &format!("{name}.html"),
-        page.to_html()?.as_bytes(),
-    )?;
-    let mut text = findings.table.to_string();
-    for refused in findings.objects["refused"].as_array().into_iter().flatten() {
-        let word = |key: &str| refused[key].as_str().unwrap_or_default().to_owned();
-        text += &format!("refused {}: {}\n", word("id"), word("reason"));
     }
-    text += &format!("{seconds:.1} s, {}", path.display());
-    Ok(text)
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use experiments::args::Args;
-use experiments::program::{Section, execute};
+use experiments::program::{Experiment, execute};
 use experiments::sections::{
     eigenfunctions, gradient_ascent, initial_grasps, sampling, shape_space, transfer,
 };
@@ -25,7 +25,7 @@ fn folder_of_clouds(folder: &Path) {
     std::fs::write(folder.join("broken.ply"), "ply\nnonsense").unwrap();
 }
 
-fn run(name: &'static str, section: Section, folder: &Path, out: &Path) -> (String, Value) {
+fn run(name: &'static str, section: Experiment, folder: &Path, out: &Path) -> (String, Value) {
     let words = [
         "test",
         "--objects",
@@ -51,7 +51,7 @@ fn every_program_writes_its_keys_and_its_page() {
     let folder = tempfile::tempdir().unwrap();
     let out = tempfile::tempdir().unwrap();
     folder_of_clouds(folder.path());
-    let sections: [(&str, Section, &[&str]); 6] = [
+    let sections: [(&str, Experiment, &[&str]); 6] = [
         (
             "fig1",
             eigenfunctions::run,

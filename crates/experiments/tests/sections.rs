@@ -129,6 +129,25 @@ fn every_pose_is_counted_once_and_grasps_are_ranked() {
 }
 
 #[test]
+fn every_convention_finds_stable_grasps_on_a_round_object() {
+    for name in Convention::NAMES {
+        let mut run = tiny_run();
+        run.convention = Convention::named(name).unwrap();
+        let mut set = tiny_set(&run).unwrap();
+        set.objects.retain(|o| o.id() == "S11");
+        let plan = initial_grasps::Plan { poses: 40 };
+        let found = initial_grasps::measure(&run, &plan, &set).unwrap();
+        assert!(found[0].stable > 0, "{name}");
+        let own = found[0]
+            .conventions
+            .iter()
+            .find(|c| c.name == name)
+            .unwrap();
+        assert_eq!(own.share_closed, Some(1.0), "{name}");
+    }
+}
+
+#[test]
 fn errors_fall_with_the_degree_and_spheres_are_a_line() {
     let run = tiny_run();
     let set = tiny_set(&run).unwrap();
@@ -142,7 +161,9 @@ fn errors_fall_with_the_degree_and_spheres_are_a_line() {
     }
     let space = shape_space::measure(&run, &shape_space_plan(), &set).unwrap();
     let line = space.spheres.unwrap();
-    assert!(line.bend <= 0.02, "{}", line.bend);
+    // The mean of 1,000 points misses a centre by about 2 mm, which moves β by twice as much; the
+    // line is 106 mm long.
+    assert!(line.bend <= 0.06, "{}", line.bend);
     assert_eq!(line.objects_by_distance[0].0, "S11");
     // The only way of the paper that the three objects have is S5 to S11.
     assert_eq!(space.passings.len(), 1);

@@ -19,12 +19,15 @@ use crate::contact::tip_contact;
 use crate::hand::{Finger, Hand};
 use crate::least_squares::{Stopping, minimise};
 
-/// Length by which a turned tip counts as a misplaced one, metres a radian.
-const FACING_WEIGHT: f64 = 0.004;
+/// Length by which a turned tip counts as a misplaced one, metres a radian: first to find
+/// the right side of the tip, then hardly, so that it does not pull the tip off the contact.
+const FACING_WEIGHTS: (f64, f64) = (4e-3, 2e-4);
+/// The balls that stand in for the object at its contacts are no larger than this, metres.
+const MAX_DEPTH: f64 = 0.02;
 /// Share of a missing clearance that counts.
 const CLEARANCE_WEIGHT: f64 = 0.5;
 /// A start whose tips come nearer than this (root sum of squares, metres) is closed and checked.
-const PROMISING: f64 = 0.01;
+const PROMISING: f64 = 3e-3;
 
 /// What is wanted of a hand that reaches contacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,10 +45,10 @@ pub struct ReachParams {
 }
 
 impl Default for ReachParams {
-    /// 2 mm, μ = 1, the paper's clearances, 40 starts.
+    /// 2 mm, μ = 1, the paper's clearances, 60 starts.
     fn default() -> Self {
         ReachParams {
-            starts: 40,
+            starts: 60,
             tolerance: 2e-3,
             friction: 1.0,
             rules: ClosingRules::default(),
@@ -165,6 +168,8 @@ struct Problem<'a> {
     pads: Vec<Vector3<f64>>,
     /// Links that are no tips.
     others: Vec<usize>,
+    /// Radius of the balls inside the object that tips are to touch, metres.
+    depth: f64,
 }
 
 impl<'a> Problem<'a> {
@@ -188,6 +193,7 @@ impl<'a> Problem<'a> {
             others: (0..hand.shapes.len())
                 .filter(|l| !is_tip(l) && !hand.shapes[*l].is_empty())
                 .collect(),
+            depth: (0.7 * object.surface().radius_bounds().0).min(MAX_DEPTH),
         }
     }
 
@@ -285,12 +291,18 @@ impl<'a> Problem<'a> {
         let project = |x: &mut DVector<f64>| {
             self.hand.model.clamp_to_limits(&mut x.as_mut_slice()[6..]);
         };
-        minimise(x, stopping, |x| self.tips(x, fingers), project);
-        if self.misfit(x, fingers) > 2.0 * PROMISING {
+        minimise(
+            x,
+            stopping,
+            |x| self.tips(x, fingers, FACING_WEIGHTS.0),
+            project,
+        );
+        if self.misfit(x, fingers) > 0.03 {
             return self.misfit(x, fingers);
         }
         let both = |x: &DVector<f64>| {
-            let (tips, free) = (self.tips(x, fingers), self.clearances(x));
+            let tips = self.tips(x, fingers, FACING_WEIGHTS.1);
+            let free = self.clearances(x);
             DVector::from_iterator(
                 tips.len() + free.len(),
                 tips.iter().chain(free.iter()).copied(),
@@ -301,29 +313,32 @@ impl<'a> Problem<'a> {
     }
 
     fn misfit(&self, x: &DVector<f64>, fingers: &[usize]) -> f64 {
-        let all = self.tips(x, fingers);
+        let all = self.tips(x, fingers, 0.0);
         let positions = all.as_slice().chunks_exact(6).flat_map(|c| &c[..3]);
         positions.map(|v| v * v).sum::<f64>().sqrt()
     }
 
-    /// Six residuals a contact: from the tip's closest point to a spot half the tip gap
-    /// above the contact, and how the pad is turned from the inward normal.
-    fn tips(&self, x: &DVector<f64>, fingers: &[usize]) -> DVector<f64> {
+    /// Six residuals a contact: how far the tip is from touching, at the contact, a ball
+    /// that lies inside the object there (its centre is `depth` below the contact, so a
+    /// tip that is tilted is off by as much as one that is moved), and how the pad is
+    /// turned from the inward normal.
+    fn tips(&self, x: &DVector<f64>, fingers: &[usize], facing_weight: f64) -> DVector<f64> {
         let poses = self.links(x);
         let mut all = DVector::zeros(6 * self.wanted.len());
         for (k, (contact, &finger)) in self.wanted.iter().zip(fingers).enumerate() {
             let links = &self.hand.fingers[finger].tip_links;
             let normal = contact.inward_normal.into_inner();
-            let spot = contact.position - normal * (0.5 * self.params.rules.tip_gap);
+            let centre = contact.position + normal * self.depth;
+            let reach = normal * (self.depth + 0.5 * self.params.rules.tip_gap);
             let offset = links
                 .iter()
-                .map(|&l| self.hand.shapes[l].offset_from_boundary(&poses[l], &spot))
+                .map(|&l| self.hand.shapes[l].offset_to(&poses[l], &centre))
                 .min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))
-                .unwrap_or_default();
+                .map_or(-reach, |offset| offset - reach);
             let facing = poses[links[0]] * self.pads[finger] - normal;
             for axis in 0..3 {
                 all[6 * k + axis] = offset[axis];
-                all[6 * k + 3 + axis] = FACING_WEIGHT * facing[axis];
+                all[6 * k + 3 + axis] = facing_weight * facing[axis];
             }
         }
         all

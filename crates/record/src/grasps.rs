@@ -97,6 +97,9 @@ pub struct HandRecord {
     pub object_from_palm: PoseRecord,
     /// Driven joints by name.
     pub joints_rad: BTreeMap<String, f64>,
+    /// Largest distance from a contact that this hand makes to the grasp's own; 0 where the
+    /// contacts are the hand's.
+    pub contact_error_m: f64,
 }
 
 /// A rigid transform.

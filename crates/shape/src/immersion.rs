@@ -103,85 +103,155 @@ pub(crate) fn normals(coordinates: &[Coefficients; 3], grid: &RingGrid) -> Vec<V
 
 /// Proves that N = f_u × f_v vanishes nowhere.
 ///
-/// N is a spherical polynomial of degree at most 2L+1. W, of degree L, approximates N/|N|², so that
-/// g = N·W is close to 1, with a degree of at most 3L+1; a certified g > 0 leaves no zero to N, and
-/// |N| ≥ min g / max |W|.
+/// N is a spherical polynomial of degree at most 2L+1. W, of degree K, is chosen such that g = N·W is
+/// positive and even ([`Samples::multiplier`]); g has degree at most 2L+1+K, and a certified g > 0
+/// leaves no zero to N: |N| ≥ min g / max |W|.
 pub(crate) fn certify(coordinates: &[Coefficients; 3]) -> Result<Immersion, SphericalError> {
     let degree = coordinates[0].degree();
-    let multiplier = multiplier(coordinates, degree)?;
+    let samples = Samples::new(coordinates)?;
+    let multiplier = samples.multiplier(degree);
     let longest = multiplier
         .iter()
         .map(|w| certified_range(w, 8))
         .map(|range| range.lower.abs().max(range.upper).powi(2))
         .sum::<f64>()
         .sqrt();
-    let mut undecided = SphericalError::InsideOut { volume: 0.0 };
+    let mut certificate = f64::NAN;
     for oversampling in OVERSAMPLING {
-        let rings = oversampling * (3 * degree + 1) + 1;
+        let rings = oversampling * (2 * degree + 1 + multiplier[0].degree()) + 1;
         let grid = RingGrid::equiangular(rings, 2 * (rings - 1));
-        let normals = normals(coordinates, &grid);
-        let [x, y, z] = multiplier.each_ref().map(|w| grid.synthesis(w).values);
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        let mut lengths = (f64::INFINITY, 0.0_f64);
-        for (i, n) in normals.iter().enumerate() {
-            let product = n.x * x[i] + n.y * y[i] + n.z * z[i];
-            (low, high) = (low.min(product), high.max(product));
-            lengths = (lengths.0.min(n.norm()), lengths.1.max(n.norm()));
-        }
+        let products = products(&normals(coordinates, &grid), &multiplier, &grid);
+        let (low, high) = extremes(&products);
         // The bound of sph::bounds for a polynomial known by its values.
         let widening = (0.5 * std::f64::consts::PI / oversampling as f64)
             .cos()
             .powi(-2);
-        let rounding = 1e-12 * (longest * lengths.1 + 1.0);
-        let certified = 0.5 * (low + high) - 0.5 * (high - low) * widening - rounding;
-        if certified > 0.0 {
+        let rounding = 1e-12 * (longest * samples.longest + 1.0);
+        certificate = 0.5 * (low + high) - 0.5 * (high - low) * widening - rounding;
+        if certificate > 0.0 {
             return Ok(Immersion {
-                lower: certified / longest,
-                seen_lower: lengths.0,
-                seen_upper: lengths.1,
+                lower: certificate / longest,
+                seen_lower: samples.shortest,
+                seen_upper: samples.longest,
             });
         }
-        undecided = SphericalError::Undecided {
-            seen: lengths.0,
-            certificate: certified,
-        };
     }
-    Err(undecided)
+    Err(SphericalError::Undecided {
+        seen: samples.shortest,
+        certificate,
+    })
 }
 
-/// W ≈ N/|N|² of the given degree, or the place where N vanishes.
-fn multiplier(
-    coordinates: &[Coefficients; 3],
-    degree: usize,
-) -> Result<[Coefficients; 3], SphericalError> {
-    let rings = 3 * degree + 4;
-    let grid = RingGrid::gauss_legendre(rings, 2 * rings);
-    let normals = normals(coordinates, &grid);
-    let length = |n: &Vector3<f64>| n.norm();
-    let largest = normals.iter().map(length).fold(0.0, f64::max);
-    let least = normals.iter().map(length).enumerate();
-    let least = least.min_by(|a, b| a.1.total_cmp(&b.1));
-    match least {
-        Some((_, seen)) if seen > VANISHING * largest => {}
-        other => {
-            let (index, seen) = other.unwrap_or((0, f64::NAN));
-            let p = direction(&grid, index);
-            return Err(SphericalError::NotImmersed {
-                seen,
-                x: p.x,
-                y: p.y,
-                z: p.z,
-                largest,
+/// N on a Gauss–Legendre grid.
+struct Samples {
+    grid: RingGrid,
+    normals: Vec<Vector3<f64>>,
+    shortest: f64,
+    longest: f64,
+}
+
+impl Samples {
+    /// Refuses normals that vanish, or nearly, on the grid.
+    fn new(coordinates: &[Coefficients; 3]) -> Result<Self, SphericalError> {
+        let rings = 3 * coordinates[0].degree() + 4;
+        let grid = RingGrid::gauss_legendre(rings, 2 * rings);
+        let normals = normals(coordinates, &grid);
+        let lengths: Vec<f64> = normals.iter().map(|n| n.norm()).collect();
+        let (shortest, longest) = extremes(&lengths);
+        if shortest > VANISHING * longest {
+            return Ok(Self {
+                grid,
+                normals,
+                shortest,
+                longest,
             });
         }
+        let at = lengths.iter().position(|l| *l == shortest).unwrap_or(0);
+        let p = direction(&grid, at);
+        Err(SphericalError::NotImmersed {
+            seen: shortest,
+            x: p.x,
+            y: p.y,
+            z: p.z,
+            largest: longest,
+        })
     }
-    Ok(std::array::from_fn(|axis| {
-        let values = GridValues {
-            longitudes: grid.longitudes(),
-            values: normals.iter().map(|n| n[axis] / n.norm_squared()).collect(),
-        };
-        grid.analysis(&values, degree)
-    }))
+
+    /// The W whose product with N is most even on the grid.
+    ///
+    /// Each candidate approximates D/(N·D), for a field D that looks the same way as N: p, as on
+    /// every member of M^rad, or N/|N| itself, smoothed. Low degrees make the certificate cheap,
+    /// high ones follow N more closely.
+    fn multiplier(&self, degree: usize) -> [Coefficients; 3] {
+        let unit: Vec<Vector3<f64>> = self.normals.iter().map(|n| n.normalize()).collect();
+        let smooth = |degree: usize| self.values(&self.analysed(&unit, degree));
+        let fields = [
+            grid_directions(&self.grid),
+            smooth(8),
+            smooth(24),
+            unit.clone(),
+        ];
+        let mut best = (
+            f64::NEG_INFINITY,
+            std::array::from_fn(|_| Coefficients::zeros(0)),
+        );
+        for field in fields {
+            let along: Vec<f64> = field
+                .iter()
+                .zip(&self.normals)
+                .map(|(d, n)| d.dot(n))
+                .collect();
+            // Where D leaves N's side its quotient is of no use.
+            if along
+                .iter()
+                .zip(&self.normals)
+                .any(|(a, n)| *a <= 0.02 * n.norm())
+            {
+                continue;
+            }
+            let quotient: Vec<Vector3<f64>> =
+                field.iter().zip(&along).map(|(d, a)| d / *a).collect();
+            for order in [4, 16, degree.max(16)] {
+                let candidate = self.analysed(&quotient, order);
+                let (low, high) = extremes(&products(&self.normals, &candidate, &self.grid));
+                if low / high > best.0 {
+                    best = (low / high, candidate);
+                }
+            }
+        }
+        best.1
+    }
+
+    fn analysed(&self, field: &[Vector3<f64>], degree: usize) -> [Coefficients; 3] {
+        std::array::from_fn(|axis| {
+            let values = GridValues {
+                longitudes: self.grid.longitudes(),
+                values: field.iter().map(|v| v[axis]).collect(),
+            };
+            self.grid.analysis(&values, degree)
+        })
+    }
+
+    fn values(&self, field: &[Coefficients; 3]) -> Vec<Vector3<f64>> {
+        let [x, y, z] = field.each_ref().map(|c| self.grid.synthesis(c).values);
+        (0..x.len())
+            .map(|i| Vector3::new(x[i], y[i], z[i]))
+            .collect()
+    }
+}
+
+/// N·W on a grid.
+fn products(normals: &[Vector3<f64>], multiplier: &[Coefficients; 3], grid: &RingGrid) -> Vec<f64> {
+    let [x, y, z] = multiplier.each_ref().map(|w| grid.synthesis(w).values);
+    let product = |(i, n): (usize, &Vector3<f64>)| n.x * x[i] + n.y * y[i] + n.z * z[i];
+    normals.iter().enumerate().map(product).collect()
+}
+
+fn extremes(values: &[f64]) -> (f64, f64) {
+    let start = (f64::INFINITY, f64::NEG_INFINITY);
+    values
+        .iter()
+        .fold(start, |(low, high), v| (low.min(*v), high.max(*v)))
 }
 
 fn direction(grid: &RingGrid, index: usize) -> Direction {

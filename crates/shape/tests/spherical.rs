@@ -1,5 +1,7 @@
 //! Members of M^sph: geometry against differences, proofs, mass, regression.
 
+mod common;
+
 use nalgebra::{Matrix3, Point3, Vector3};
 use proptest::prelude::*;
 use shape::{
@@ -123,6 +125,29 @@ fn a_radial_shape_is_the_same_surface_in_both_spaces() {
     assert!((a.inertia - b.inertia).norm() <= 1e-11 * a.inertia.norm());
     let mesh = spherical.mesh(200, 400);
     assert!((mesh.volume() / b.volume - 1.0).abs() <= 1e-3);
+}
+
+#[test]
+fn real_shapes_of_degree_50_are_proved_immersions() {
+    for name in ["apple", "sugar_box", "toy_cat"] {
+        let Some(cloud) = common::cloud(name) else {
+            return;
+        };
+        let settings = FitSettings {
+            degree: 50,
+            lambda: None,
+        };
+        let fit = shape::fit::fit(&cloud, &settings).unwrap();
+        let radial = fit.shape;
+        let spherical = SphericalShape::from_radial(&radial).unwrap();
+        let proof = spherical.immersion();
+        assert!(
+            proof.lower > 0.0 && proof.lower <= proof.seen_lower,
+            "{name}"
+        );
+        let (a, b) = (radial.mass_properties(), spherical.mass_properties());
+        assert!((a.volume / b.volume - 1.0).abs() <= 1e-10, "{name}");
+    }
 }
 
 #[test]

@@ -173,7 +173,9 @@ impl Search {
             work += open.len();
             let judged: Vec<(f64, f64)> =
                 open.par_iter().map(|cell| self.judge(cell, sign)).collect();
-            best = judged.iter().fold(best, |best, &(value, _)| best.min(value));
+            best = judged
+                .iter()
+                .fold(best, |best, &(value, _)| best.min(value));
             let mut next = Vec::new();
             for (cell, &(_, bound)) in open.iter().zip(&judged) {
                 if bound >= best - self.slack {
@@ -202,7 +204,9 @@ impl Search {
         let d = cell.half * std::f64::consts::SQRT_2;
         let turn = self.degree * d;
         let trace = sign * jet.hessian.trace();
-        let spread = (2.0 * jet.hessian.norm_squared() - trace * trace).max(0.0).sqrt();
+        let spread = (2.0 * jet.hessian.norm_squared() - trace * trace)
+            .max(0.0)
+            .sqrt();
         let least_curvature = (0.5 * (trace - spread)).min(0.0);
         let taylor = value - jet.gradient.norm() * d + 0.5 * least_curvature * d * d
             - self.reach * turn.powi(3) / 6.0;

@@ -139,7 +139,8 @@ impl Pass<'_> {
                 (cos, self.flip * sin)
             });
             for q in 0..stride {
-                let inputs: [Complex; R] = std::array::from_fn(|j| from[q + stride * (p + part * j)]);
+                let inputs: [Complex; R] =
+                    std::array::from_fn(|j| from[q + stride * (p + part * j)]);
                 let mut outputs = [Complex::ZERO; R];
                 for lane in 0..LANES {
                     let x = std::array::from_fn(|j| (inputs[j].re[lane], inputs[j].im[lane]));
@@ -250,8 +251,8 @@ mod tests {
                 for k in 0..length {
                     let (mut re, mut im) = (0.0, 0.0);
                     for (j, x) in data.iter().enumerate() {
-                        let angle =
-                            factor * std::f64::consts::TAU * ((j * k) % length) as f64 / length as f64;
+                        let angle = factor * std::f64::consts::TAU * ((j * k) % length) as f64
+                            / length as f64;
                         let (sin, cos) = angle.sin_cos();
                         re += x.re[3] * cos - x.im[3] * sin;
                         im += x.re[3] * sin + x.im[3] * cos;

@@ -17,7 +17,9 @@ use crate::torus::{Torus, TorusGrid};
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FieldError {
     /// Degrees or tolerances differ, so the grids do.
-    #[error("field {index} is of degree {degree} with {taps} taps; the first has degree {first_degree} with {first_taps}")]
+    #[error(
+        "field {index} is of degree {degree} with {taps} taps; the first has degree {first_degree} with {first_taps}"
+    )]
     Mismatch {
         /// Which field.
         index: usize,
@@ -59,8 +61,14 @@ impl Field {
     /// L = 50; L³ flops.
     pub fn new(beta: &Coefficients, tolerance: f64) -> Self {
         // Widths 4, 6, … 16 reach about these accuracies on a grid twice as fine as needed.
-        const REACHED: [(f64, usize); 6] =
-            [(0.1, 4), (2e-3, 6), (4e-5, 8), (6e-7, 10), (7e-9, 12), (1e-10, 14)];
+        const REACHED: [(f64, usize); 6] = [
+            (0.1, 4),
+            (2e-3, 6),
+            (4e-5, 8),
+            (6e-7, 10),
+            (7e-9, 12),
+            (1e-10, 14),
+        ];
         let fits = REACHED.iter().find(|(reached, _)| *reached <= tolerance);
         let width = fits.map_or(TAPS, |&(_, width)| width);
         let torus = Torus::new(beta.degree().max(LEAST_DEGREE), width, 2.0);
@@ -148,11 +156,7 @@ impl Field {
         });
         let mut jet = chart_jet(&q, sin, &d, n);
         jet.value += self.mean;
-        if tilted {
-            unturn(jet)
-        } else {
-            jet
-        }
+        if tilted { unturn(jet) } else { jet }
     }
 }
 
@@ -217,7 +221,10 @@ impl WithSimd for Read<'_> {
             }
         }
         let mut out = [0.0; 6];
-        for (slot, (a, b)) in [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)].into_iter().enumerate() {
+        for (slot, (a, b)) in [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)]
+            .into_iter()
+            .enumerate()
+        {
             out[slot] = dot(&sums[a], &along_phi[b]);
         }
         out
@@ -272,7 +279,11 @@ mod tests {
             errors[2] = errors[2].max((found.hessian - exact.hessian).norm());
         }
         let l = beta.degree().max(LEAST_DEGREE) as f64;
-        [errors[0] / reach, errors[1] / (l * reach), errors[2] / (l * l * reach)]
+        [
+            errors[0] / reach,
+            errors[1] / (l * reach),
+            errors[2] / (l * l * reach),
+        ]
     }
 
     #[test]
@@ -281,7 +292,10 @@ mod tests {
             let beta = rough(degree);
             for tolerance in [0.1, 2e-3, 4e-5, 6e-7, 7e-9, 1e-10, 2e-12] {
                 let errors = worst(&beta, &Field::new(&beta, tolerance));
-                assert!(errors.iter().all(|e| *e <= tolerance), "L={degree} {tolerance:.0e}: {errors:?}");
+                assert!(
+                    errors.iter().all(|e| *e <= tolerance),
+                    "L={degree} {tolerance:.0e}: {errors:?}"
+                );
             }
         }
     }
@@ -296,7 +310,11 @@ mod tests {
         let other = Field::new(&rough(21), 1e-9);
         assert!(matches!(
             Field::combine(&[(1.0, &fa), (1.0, &other)]),
-            Err(FieldError::Mismatch { index: 1, degree: 21, .. })
+            Err(FieldError::Mismatch {
+                index: 1,
+                degree: 21,
+                ..
+            })
         ));
         assert_eq!(Field::combine(&[]).err(), Some(FieldError::Empty));
     }

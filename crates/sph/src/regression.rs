@@ -136,7 +136,9 @@ pub enum RegressionError {
         degree: usize,
     },
     /// The weights do not fit the samples: one finite weight ≥ 0 a sample, not all zero.
-    #[error("weight {index} is {value}; expected one finite weight a sample, none negative, one positive")]
+    #[error(
+        "weight {index} is {value}; expected one finite weight a sample, none negative, one positive"
+    )]
     Weight {
         /// Which weight; the number of samples when their number is wrong.
         index: usize,

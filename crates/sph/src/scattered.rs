@@ -249,7 +249,10 @@ mod tests {
         let mut all = even_directions(3000);
         all.extend([Vector3::z_axis(), -Vector3::z_axis(), Vector3::x_axis()]);
         let tiny = Vector3::new(3e-9, -1e-9, 0.0);
-        all.extend([retract(&Vector3::z_axis(), &tiny), retract(&-Vector3::z_axis(), &tiny)]);
+        all.extend([
+            retract(&Vector3::z_axis(), &tiny),
+            retract(&-Vector3::z_axis(), &tiny),
+        ]);
         all.push(Direction::new_normalize(Vector3::new(1.0, -1e-18, 0.2)));
         all
     }
@@ -267,7 +270,11 @@ mod tests {
             let direct = batch::evaluate(&beta, &points);
             let scale = direct.iter().fold(0.0_f64, |s, v| s.max(v.abs()));
             for (a, b) in scattered.evaluate(&beta).iter().zip(&direct) {
-                assert!((a - b).abs() <= 3e-14 * scale, "L={degree}: {:.1e}", (a - b).abs() / scale);
+                assert!(
+                    (a - b).abs() <= 3e-14 * scale,
+                    "L={degree}: {:.1e}",
+                    (a - b).abs() / scale
+                );
             }
             let direct = batch::moments(&points, &weights, degree);
             let found = scattered.moments(&weights, degree);
@@ -285,9 +292,19 @@ mod tests {
             *b = (i as f64 * 1.9).sin();
         }
         let weights: Vec<f64> = (0..points.len()).map(|i| (i as f64 * 0.3).cos()).collect();
-        let left: f64 = scattered.evaluate(&beta).iter().zip(&weights).map(|(f, w)| f * w).sum();
+        let left: f64 = scattered
+            .evaluate(&beta)
+            .iter()
+            .zip(&weights)
+            .map(|(f, w)| f * w)
+            .sum();
         let moments = scattered.moments(&weights, 23);
-        let right: f64 = moments.as_slice().iter().zip(beta.as_slice()).map(|(a, b)| a * b).sum();
+        let right: f64 = moments
+            .as_slice()
+            .iter()
+            .zip(beta.as_slice())
+            .map(|(a, b)| a * b)
+            .sum();
         assert!((left - right).abs() <= 1e-11 * (1.0 + left.abs()));
     }
 }

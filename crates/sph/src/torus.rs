@@ -181,7 +181,11 @@ impl Torus {
                 for (side, ring) in [(0, north), (1, south)] {
                     let at = ring * modes.stride + m;
                     modes.re[at] = share * sums.cos[side][j % LANES];
-                    modes.im[at] = if m == 0 { 0.0 } else { -share * sums.sin[side][j % LANES] };
+                    modes.im[at] = if m == 0 {
+                        0.0
+                    } else {
+                        -share * sums.sin[side][j % LANES]
+                    };
                 }
             }
         }
@@ -313,7 +317,13 @@ fn load(modes: &Modes, row: usize, first: usize) -> Complex {
 
 /// Signs (−1)^m of eight orders.
 fn parities(first: usize) -> Lane {
-    std::array::from_fn(|lane| if (first + lane).is_multiple_of(2) { 1.0 } else { -1.0 })
+    std::array::from_fn(|lane| {
+        if (first + lane).is_multiple_of(2) {
+            1.0
+        } else {
+            -1.0
+        }
+    })
 }
 
 struct SumDegrees<'a> {
@@ -330,7 +340,13 @@ impl WithSimd for SumDegrees<'_> {
         let mut power = [1.0; LANES];
         let mut out = Vec::with_capacity(self.legendre.degree() + 1);
         for m in 0..=self.legendre.degree() {
-            out.push(order_sums(self.legendre, m, &self.pairs.z, &power, self.beta));
+            out.push(order_sums(
+                self.legendre,
+                m,
+                &self.pairs.z,
+                &power,
+                self.beta,
+            ));
             multiply(&mut power, &self.pairs.sin);
         }
         out
@@ -462,7 +478,11 @@ impl WithSimd for RowsFromModes<'_> {
         for m in 0..=torus.degree {
             for lane in 0..LANES.min(rows) {
                 let (ar, ai) = at(lane, m);
-                let (br, bi) = if lane + LANES < rows { at(lane + LANES, m) } else { (0.0, 0.0) };
+                let (br, bi) = if lane + LANES < rows {
+                    at(lane + LANES, m)
+                } else {
+                    (0.0, 0.0)
+                };
                 data[m].re[lane] = ar - bi;
                 data[m].im[lane] = ai + br;
                 if m > 0 {
@@ -475,7 +495,11 @@ impl WithSimd for RowsFromModes<'_> {
         for (r, row) in self.values.chunks_mut(stride).enumerate() {
             for (k, value) in row.iter_mut().enumerate() {
                 let element = &data[(k + n - reach) % n];
-                *value = if r < LANES { element.re[r] } else { element.im[r - LANES] };
+                *value = if r < LANES {
+                    element.re[r]
+                } else {
+                    element.im[r - LANES]
+                };
             }
         }
     }

@@ -54,7 +54,11 @@ pub(crate) fn to_rings(rings: &[(f64, f64)], longitudes: usize, beta: &[f64]) ->
             let pair = j.min(rings.len() - 1 - j);
             let lane = pair % LANES;
             for (value, element) in row.iter_mut().zip(&blocks[pair / LANES]) {
-                *value = if j == pair { element.re[lane] } else { element.im[lane] };
+                *value = if j == pair {
+                    element.re[lane]
+                } else {
+                    element.im[lane]
+                };
             }
         });
     values

@@ -196,8 +196,14 @@ fn outliers_do_not_spoil_a_robust_fit_and_clean_samples_keep_their_weight() {
     assert_eq!(rounds, 0);
     let (spoiled_robust, _) = error(&spoiled, &robust);
     let (spoiled_plain, _) = error(&spoiled, &Settings::of_degree(degree));
-    assert!(spoiled_robust <= 1.3 * untouched, "{spoiled_robust:.1e} {untouched:.1e}");
-    assert!(spoiled_plain > 3.0 * untouched, "{spoiled_plain:.1e} {untouched:.1e}");
+    assert!(
+        spoiled_robust <= 1.3 * untouched,
+        "{spoiled_robust:.1e} {untouched:.1e}"
+    );
+    assert!(
+        spoiled_plain > 3.0 * untouched,
+        "{spoiled_plain:.1e} {untouched:.1e}"
+    );
 }
 
 #[test]
@@ -227,7 +233,10 @@ fn every_method_gives_the_same_weighted_fit() {
         let reference = by(Method::Qr);
         for method in [Method::Automatic, Method::Conjugate, Method::Cholesky] {
             let error = by(method).distance(&reference);
-            assert!(error <= 1e-10 * reference.distance(&Coefficients::zeros(0)), "{method:?}");
+            assert!(
+                error <= 1e-10 * reference.distance(&Coefficients::zeros(0)),
+                "{method:?}"
+            );
         }
     }
     let negative: Vec<f64> = (0..2500).map(|i| if i == 7 { -1.0 } else { 1.0 }).collect();

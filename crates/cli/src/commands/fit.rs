@@ -22,6 +22,9 @@ struct FitLine {
     r_max_certified_m: f64,
     in_m_rad: bool,
     condition: f64,
+    outliers: usize,
+    unseen_share: f64,
+    multivalued_share: f64,
     centre_m: [f64; 3],
     seconds: f64,
 }
@@ -34,7 +37,7 @@ pub(crate) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> 
         ));
     }
     for path in &options.clouds {
-        let line = fit_one(path, options)?;
+        let line = fit_one(path, options, common.seed)?;
         if common.json {
             output::say_json(&line)?;
         } else {
@@ -56,8 +59,8 @@ pub(crate) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> 
     Ok(())
 }
 
-fn fit_one(path: &Path, options: &FitOptions) -> Result<FitLine, Failure> {
-    let cloud = input::cloud(path, &options.cloud)?;
+fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Failure> {
+    let cloud = input::cloud(path, &options.cloud, seed)?;
     let start = Instant::now();
     let fit = input::fit(&cloud, &path.display().to_string(), &options.cloud)?;
     let seconds = start.elapsed().as_secs_f64();
@@ -81,6 +84,9 @@ fn fit_one(path: &Path, options: &FitOptions) -> Result<FitLine, Failure> {
         // A shape that is not cannot be made: `fit` has refused before.
         in_m_rad: r_min > 0.0,
         condition: fit.condition,
+        outliers: fit.outliers.len(),
+        unseen_share: fit.star.unseen,
+        multivalued_share: fit.star.multiple,
         centre_m: fit.centre_in_cloud.into(),
         seconds,
     })

@@ -11,7 +11,7 @@ use shape::PointCloud;
 use crate::args::{Common, GraspOptions};
 use crate::failure::Failure;
 use crate::plan::synthesis::synthesize;
-use crate::plan::{Candidate, Target, library, page, ranking, synthesis, transfer};
+use crate::plan::{Candidate, Target, library, page, ranking, reach, synthesis, transfer};
 use crate::{input, output};
 
 /// The built-in object that stands for "never seen before".
@@ -28,6 +28,7 @@ struct GraspLine {
     neighbours: Vec<String>,
     transferred: usize,
     transferred_closed: usize,
+    transferred_with_hand: usize,
     poses: usize,
     synthesized: usize,
     grasps: usize,
@@ -67,6 +68,17 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
     let closed = transferred.iter().filter(|c| c.quality > 0.0).count();
     let mut candidates = ranking::rank(transferred.clone());
     candidates.truncate(options.keep);
+    let bar = output::progress(common.quiet, candidates.len(), "reaching contacts");
+    reach::give_hands(
+        &target,
+        &hand,
+        &mut candidates,
+        options.reach_starts,
+        common.seed,
+        &bar,
+    )?;
+    bar.finish_and_clear();
+    let reached = candidates.iter().filter(|c| c.hand.is_some()).count();
     candidates.extend(synthesis::candidates(&found, options.keep));
     let ranked = ranking::rank(candidates);
     let file = ranking::grasps_file(&target, &hand, &ranked);
@@ -102,6 +114,7 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
             .collect(),
         transferred: transferred.len(),
         transferred_closed: closed,
+        transferred_with_hand: reached,
         poses: options.poses,
         synthesized: found.outcomes.stable,
         grasps: ranked.len(),
@@ -130,7 +143,10 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
 /// The cloud given, or the built-in unseen object.
 fn object(options: &GraspOptions, common: &Common) -> Result<(String, PointCloud), Failure> {
     if let Some(path) = &options.cloud {
-        return Ok((input::stem(path), input::cloud(path, &options.fit)?));
+        return Ok((
+            input::stem(path),
+            input::cloud(path, &options.fit, common.seed)?,
+        ));
     }
     let unseen = catalogue::by_id(UNSEEN)
         .ok_or_else(|| Failure::other(format!("the built-in object {UNSEEN} is missing")))?;
@@ -170,9 +186,10 @@ fn print_table(line: &GraspLine, file: &GraspsFile, reasons: &[(&'static str, us
         .map(|(reason, count)| format!("{count} {}", reason.replace('_', " ")))
         .collect();
     output::say(format!(
-        "{} of {} transferred grasps are force-closed; {} of {} hand poses give a stable grasp ({})",
+        "{} of {} transferred grasps are force-closed, the hand reaches {}; {} of {} hand poses give a stable grasp ({})",
         line.transferred_closed,
         line.transferred,
+        line.transferred_with_hand,
         line.synthesized,
         line.poses,
         rejected.join(", ")

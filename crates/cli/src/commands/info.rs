@@ -2,6 +2,8 @@
 
 use record::{GraspsFile, Kind, LibraryRecord, ShapeRecord, envelope};
 
+use shape::io::{Geometry, Loaded};
+
 use crate::args::InfoOptions;
 use crate::failure::Failure;
 use crate::{input, output};
@@ -21,10 +23,8 @@ pub(crate) fn run(options: &InfoOptions) -> Result<(), Failure> {
         None => match serde_json::from_slice::<GraspsFile>(&bytes) {
             Ok(file) => grasps_lines(&file),
             Err(_) => {
-                let read = shape::io::read_ply(&bytes).map_err(|e| Failure::input(path, e))?;
-                let cloud =
-                    shape::PointCloud::new(read.points).map_err(|e| Failure::input(path, e))?;
-                cloud_lines(&cloud, read.dropped)
+                let loaded = input::load(path)?;
+                loaded_lines(&loaded)
             }
         },
     };
@@ -84,18 +84,25 @@ fn grasps_lines(file: &GraspsFile) -> Vec<String> {
     ]
 }
 
-fn cloud_lines(cloud: &shape::PointCloud, dropped: usize) -> Vec<String> {
-    let size = 1e3 * cloud.extent();
-    let mean = cloud.mean();
-    vec![
-        format!(
-            "cloud       {} points, {dropped} rows dropped",
-            cloud.points().len()
+fn loaded_lines(loaded: &Loaded) -> Vec<String> {
+    let kind = match &loaded.geometry {
+        Geometry::Points(points) => format!("cloud       {} points", points.len()),
+        Geometry::Mesh(mesh) => format!(
+            "mesh        {} vertices, {} triangles",
+            mesh.vertices.len(),
+            mesh.triangles.len()
         ),
+    };
+    let (mut low, mut high) = (loaded.vertices()[0], loaded.vertices()[0]);
+    for p in loaded.vertices() {
+        (low, high) = (low.inf(p), high.sup(p));
+    }
+    let size = 1e3 * (high - low);
+    vec![
+        format!("{kind}, {} rows dropped, {}", loaded.dropped, loaded.format),
         format!(
             "extent      {:.1} × {:.1} × {:.1} mm, if the unit is metres",
             size.x, size.y, size.z
         ),
-        format!("mean        {:.5} {:.5} {:.5}", mean.x, mean.y, mean.z),
     ]
 }

@@ -1,12 +1,12 @@
 //! The page that `grasp` writes.
 
-use hand::Hand;
+use hand::{Hand, hand_meshes};
+use nalgebra::Isometry3;
 use record::GraspsFile;
 use record::grasps::{ConventionRecord, SourceRecord};
 use report::{GraspPage, Mesh, PageGrasp, grasp_page};
 use shape::PointCloud;
 
-use super::hand_mesh::hand_mesh;
 use super::ranking::{cloud_from_palm, in_cloud};
 use super::{Candidate, Target};
 use crate::failure::Failure;
@@ -37,7 +37,7 @@ pub(crate) fn render(
             contacts: record.contacts_m.clone(),
             inward_normals: record.inward_normals.clone(),
             details: details(record),
-            hand: placement.and_then(|p| hand_mesh(hand, &p.joints, &cloud_from_palm(p, &centre))),
+            hand: placement.and_then(|p| drawn_hand(hand, &p.joints, &cloud_from_palm(p, &centre))),
         }
     });
     let page = GraspPage {
@@ -52,6 +52,22 @@ pub(crate) fn render(
         grasps: grasps.collect(),
     };
     grasp_page(&page).map_err(|e| Failure::other(format!("cannot draw the page: {e}")))
+}
+
+/// All pieces of a hand's collision model; `None` for joint values of the wrong number.
+fn drawn_hand(hand: &Hand, joints: &[f64], cloud_from_palm: &Isometry3<f64>) -> Option<Mesh> {
+    let mut drawn = Mesh::default();
+    for (_, mesh) in hand_meshes(hand, joints).ok()? {
+        drawn.append(&Mesh {
+            vertices: mesh
+                .vertices
+                .iter()
+                .map(|p| (cloud_from_palm * p).into())
+                .collect(),
+            triangles: mesh.triangles,
+        });
+    }
+    Some(drawn)
 }
 
 /// "synthesis", or "transfer from S5 shampoo bottle".
@@ -109,6 +125,10 @@ fn details(record: &record::GraspRecord) -> Vec<(String, String)> {
     }
     if let Some(hand) = &record.hand {
         facts.push(("hand".to_owned(), hand.name.clone()));
+        if hand.contact_error_m > 0.0 {
+            let error = format!("within {:.1} mm", 1e3 * hand.contact_error_m);
+            facts.push(("tips at the contacts".to_owned(), error));
+        }
         for (joint, value) in &hand.joints_rad {
             facts.push((joint.clone(), format!("{:.1}°", value.to_degrees())));
         }

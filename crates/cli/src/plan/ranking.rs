@@ -117,5 +117,6 @@ fn hand_record(placement: &HandPlacement, hand: &Hand, centre: &Point3<f64>) -> 
             quaternion_xyzw: pose.rotation.coords.into(),
         },
         joints_rad: joints,
+        contact_error_m: placement.contact_error,
     }
 }

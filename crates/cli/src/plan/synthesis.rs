@@ -60,6 +60,7 @@ pub(crate) fn candidates(synthesis: &Synthesis, count: usize) -> Vec<Candidate> 
             hand: Some(HandPlacement {
                 object_from_palm: grasp.object_from_palm,
                 joints: grasp.joints.clone(),
+                contact_error: 0.0,
             }),
         })
         .collect()

@@ -6,6 +6,7 @@ use sph::Direction;
 
 use super::section;
 use super::surfaces::grasp_cell;
+use crate::paper;
 use crate::sections::transfer::{Carried, Count};
 
 /// One grasp on its way, as it is to be drawn.
@@ -57,19 +58,30 @@ pub fn figures(
 }
 
 fn unstable(sources: &[&Count]) -> Bars {
-    let series = |name: &str, pick: fn(&Count) -> usize| BarSeries {
+    let series = |name: &str, pick: fn(&Count) -> (usize, usize)| BarSeries {
         name: name.to_owned(),
-        values: sources.iter().map(|c| pick(c) as f64).collect(),
+        values: sources
+            .iter()
+            .map(|c| pick(c))
+            .map(|(part, whole)| 100.0 * part as f64 / whole.max(1) as f64)
+            .collect(),
     };
     Bars {
-        title: "Transfers that end below Q = 0.01".to_owned(),
+        title: "Transfers that end unstable".to_owned(),
         x_label: "source".to_owned(),
-        y_label: "transfers".to_owned(),
+        y_label: "unstable / %".to_owned(),
         categories: sources.iter().map(|c| c.from.clone()).collect(),
         series: vec![
-            series("the paper's transfer, here", |c| c.unstable),
-            series("the naive transfer, here", |c| c.unstable_naive),
-            series("the paper", |c| c.unstable_in_paper.unwrap_or(0)),
+            series("the paper's transfer, here", |c| (c.unstable, c.transfers)),
+            series("the naive transfer, here", |c| {
+                (c.unstable_naive, c.transfers)
+            }),
+            series("the paper", |c| {
+                (
+                    c.unstable_in_paper.unwrap_or(0),
+                    paper::TRANSFERS_PER_SOURCE,
+                )
+            }),
         ],
     }
 }

@@ -39,7 +39,7 @@ pub struct ObjectGrasps {
     pub id: String,
     /// Poses tried.
     pub poses: usize,
-    /// Stable grasps: quality at least 0.01.
+    /// Stable grasps: quality at least 0.01 under the paper's convention, force-closed under others.
     pub stable: usize,
     /// Closed on the object, but of less quality.
     pub unstable: usize,

@@ -12,7 +12,9 @@ use crate::error::ExperimentError;
 use crate::figures::{self, transfer::DrawnTransfer};
 use crate::output::Findings;
 use crate::paper;
-use crate::pipeline::{FittedObject, FittedSet, best_grasps, fitted_objects};
+use crate::pipeline::{
+    FittedObject, FittedSet, best_grasps, fitted_objects, is_stable, least_quality,
+};
 use crate::run::Run;
 use crate::sections::gradient_ascent::paper_ascent;
 use crate::statistics::mean;
@@ -71,9 +73,9 @@ pub struct Count {
     pub from: String,
     /// Transfers.
     pub transfers: usize,
-    /// Of quality below 0.01 after the paper's transfer.
+    /// Unstable after the paper's transfer: quality below 0.01 (conventions other than the paper's: open).
     pub unstable: usize,
-    /// Of quality below 0.01 after the naive transfer.
+    /// Unstable after the naive transfer.
     pub unstable_naive: usize,
     /// What the paper counts at full scale; none for objects that it does not have.
     pub unstable_in_paper: Option<usize>,
@@ -91,7 +93,7 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
     let set = fitted_objects(run, plan.objects.as_deref(), 2)?;
     let grasps = best_grasps(run, &set, plan.poses, plan.grasps)?;
     let carried = measure(run, &plan, &set, &grasps)?;
-    let counts = counts(&set, &carried);
+    let counts = counts(run, &set, &carried);
     let drawn = drawn(run, &plan, &set, &grasps)?;
     let by_source: Vec<_> = paper::UNSTABLE_BY_SOURCE
         .iter()
@@ -116,6 +118,7 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
             "grasps_per_source": plan.grasps,
             "stations": plan.transfer.intervals + 1,
             "steps_per_station": plan.transfer.ascent.steps,
+            "unstable_below": least_quality(&run.convention),
             "counts": counts,
             "transfers": carried,
         }),
@@ -219,7 +222,7 @@ fn drawn(
 }
 
 /// Counts by source, and over all.
-fn counts(set: &FittedSet, carried: &[Carried]) -> Vec<Count> {
+fn counts(run: &Run, set: &FittedSet, carried: &[Carried]) -> Vec<Count> {
     let builtin = set.objects.iter().all(|o| o.object.truth.is_some());
     let mut counts: Vec<Count> = set
         .objects
@@ -227,11 +230,12 @@ fn counts(set: &FittedSet, carried: &[Carried]) -> Vec<Count> {
         .map(|source| {
             let of: Vec<&Carried> = carried.iter().filter(|c| c.from == source.id()).collect();
             let paper = builtin.then(|| paper::unstable_from(source.number()));
-            count(source.id(), &of, paper)
+            count(run, source.id(), &of, paper)
         })
         .collect();
     let all: Vec<&Carried> = carried.iter().collect();
     counts.push(count(
+        run,
         "all",
         &all,
         builtin.then_some(paper::UNSTABLE_TRANSFERS),
@@ -239,9 +243,13 @@ fn counts(set: &FittedSet, carried: &[Carried]) -> Vec<Count> {
     counts
 }
 
-fn count(from: &str, carried: &[&Carried], unstable_in_paper: Option<usize>) -> Count {
+fn count(run: &Run, from: &str, carried: &[&Carried], unstable_in_paper: Option<usize>) -> Count {
     let list = |pick: fn(&Carried) -> f64| carried.iter().map(|c| pick(c)).collect::<Vec<f64>>();
-    let unstable = |list: &[f64]| list.iter().filter(|q| **q < paper::UNSTABLE_BELOW).count();
+    let unstable = |list: &[f64]| {
+        list.iter()
+            .filter(|q| !is_stable(**q, &run.convention))
+            .count()
+    };
     let (initial, last, naive) = (list(|c| c.initial), list(|c| c.last), list(|c| c.naive));
     Count {
         from: from.to_owned(),
@@ -271,9 +279,9 @@ fn table(plan: &Plan, counts: &[Count]) -> Table {
         &[
             "from",
             "transfers",
-            "Q < 0.01",
+            "unstable",
             "in the paper",
-            "naive Q < 0.01",
+            "naive unstable",
             "initial",
             "final",
             "naive",

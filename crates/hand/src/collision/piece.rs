@@ -28,8 +28,7 @@ enum Form {
     /// Along y.
     Capsule(Capsule),
     Ball(Ball),
-    /// The hull and half the extents of its bounding box, which is centred.
-    Hull(Box<ConvexPolyhedron>, Vector3<f64>),
+    Hull(Box<Hull>),
 }
 
 /// Bounds on the distance of a point from a piece, with the slope of the lower one.
@@ -39,6 +38,66 @@ pub(crate) struct PointDistance {
     pub(crate) upper: f64,
     /// Gradient of the lower bound, a unit vector outside the piece.
     pub(crate) slope: Vector3<f64>,
+}
+
+/// A convex hull about its bounding box's middle.
+#[derive(Debug, Clone)]
+struct Hull {
+    body: ConvexPolyhedron,
+    /// Outward unit normals of the faces and their heights over the middle.
+    faces: Vec<(Vector3<f64>, f64)>,
+    /// Radius of a sphere about the middle inside the hull; 0 if there is none.
+    inner_radius: f64,
+}
+
+impl Hull {
+    fn new(body: ConvexPolyhedron) -> Self {
+        let faces: Vec<_> = body
+            .faces()
+            .iter()
+            .map(|face| {
+                let normal = from_parry(face.normal);
+                (normal, support_of(&body, &normal))
+            })
+            .collect();
+        let least = faces.iter().map(|f| f.1).fold(f64::INFINITY, f64::min);
+        Hull {
+            body,
+            faces,
+            inner_radius: if least.is_finite() {
+                least.max(0.0)
+            } else {
+                0.0
+            },
+        }
+    }
+
+    /// The farthest face plane gives the lower bound, the inner sphere the upper one.
+    fn distance(&self, p: &Vector3<f64>) -> PointDistance {
+        let mut best = PointDistance {
+            lower: 0.0,
+            upper: p.norm() - self.inner_radius,
+            slope: Vector3::zeros(),
+        };
+        for (normal, height) in &self.faces {
+            let above = normal.dot(p) - height;
+            if above > best.lower {
+                best.lower = above;
+                best.slope = *normal;
+            }
+        }
+        best.upper = best.upper.max(best.lower);
+        if self.inner_radius <= 0.0 {
+            best.upper = f64::INFINITY;
+        }
+        best
+    }
+}
+
+fn support_of(body: &ConvexPolyhedron, n: &Vector3<f64>) -> f64 {
+    let n = to_parry(n);
+    let heights = body.points().iter().map(|p| n.dot(*p));
+    heights.fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// A convex piece in its own frame, placed in a link.
@@ -82,11 +141,11 @@ impl ConvexPiece {
             }
             &Geometry::Sphere { radius } => (Form::Ball(Ball::new(radius)), radius),
             Geometry::Hull { points } => {
-                let (centre, half) = bounding_box(points);
+                let centre = middle(points);
                 let hull = hull(points, &centre)?;
                 link_from_piece *= nalgebra::Translation3::from(centre.coords);
                 let radius = hull.points().iter().map(|p| p.length()).fold(0.0, f64::max);
-                (Form::Hull(Box::new(hull), half), radius)
+                (Form::Hull(Box::new(Hull::new(hull))), radius)
             }
         };
         Ok(ConvexPiece {
@@ -98,7 +157,7 @@ impl ConvexPiece {
 
     /// The distance of a point (piece frame) from the piece and how it changes.
     ///
-    /// Exact but for hulls, for which the bounding box gives the lower bound. Inside the
+    /// Exact but for hulls, for which the face planes give the lower bound. Inside the
     /// piece both bounds are 0 (a hull: the lower one) and the slope vanishes.
     pub(crate) fn distance(&self, p: &Vector3<f64>) -> PointDistance {
         let exact = |nearest: Vector3<f64>| {
@@ -141,10 +200,7 @@ impl ConvexPiece {
                 rounded(Vector3::new(0.0, p.y.clamp(-half, half), 0.0), c.radius)
             }
             Form::Ball(b) => rounded(Vector3::zeros(), b.radius),
-            Form::Hull(_, half) => PointDistance {
-                upper: f64::INFINITY,
-                ..exact(clamp_to_box(p, half))
-            },
+            Form::Hull(hull) => hull.distance(p),
         }
     }
 
@@ -154,7 +210,7 @@ impl ConvexPiece {
             Form::Cylinder(s) => s,
             Form::Capsule(s) => s,
             Form::Ball(s) => s,
-            Form::Hull(s, _) => s.as_ref(),
+            Form::Hull(s) => &s.body,
         }
     }
 
@@ -191,7 +247,7 @@ impl ConvexPiece {
             Form::Cylinder(s) => s.to_trimesh(24),
             Form::Capsule(s) => s.to_trimesh(24, 12),
             Form::Ball(s) => s.to_trimesh(24, 12),
-            Form::Hull(s, _) => s.to_trimesh(),
+            Form::Hull(s) => s.body.to_trimesh(),
         }
     }
 
@@ -255,29 +311,16 @@ impl LinkShape {
         self.pieces.is_empty()
     }
 
-    /// From the nearest boundary point of any piece to `spot`, both in the frame of the pose.
-    ///
-    /// Zero on the boundary; inside the link it points inwards.
-    pub(crate) fn offset_from_boundary(
-        &self,
-        pose: &Isometry3<f64>,
-        spot: &Point3<f64>,
-    ) -> Vector3<f64> {
+    /// From the nearest point of any piece to `p`, both in the frame of the pose; zero inside.
+    pub(crate) fn offset_to(&self, pose: &Isometry3<f64>, p: &Point3<f64>) -> Vector3<f64> {
         let offsets = self.pieces.iter().map(|piece| {
             let placed = pose * piece.link_from_piece;
-            let local = placed.inverse_transform_point(spot).coords;
-            let nearest = piece.shape().project_local_point(to_parry(&local), false);
-            let offset = local - from_parry(nearest.point);
-            let signed = if nearest.is_inside {
-                -offset.norm()
-            } else {
-                offset.norm()
-            };
-            (signed, placed * offset)
+            let local = placed.inverse_transform_point(p).coords;
+            placed * (local - piece.closest_point(&local))
         });
         offsets
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map_or_else(Vector3::zeros, |(_, offset)| offset)
+            .min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))
+            .unwrap_or_else(Vector3::zeros)
     }
 
     /// All pieces as one mesh in the frame of the pose.
@@ -311,8 +354,7 @@ impl LinkShape {
 
 /// Checks that the vertices of a mesh span a convex hull with volume.
 pub(crate) fn check_hull(points: &[Point3<f64>]) -> Result<(), GeometryError> {
-    let (centre, _) = bounding_box(points);
-    hull(points, &centre).map(|_| ())
+    hull(points, &middle(points)).map(|_| ())
 }
 
 fn hull(points: &[Point3<f64>], centre: &Point3<f64>) -> Result<ConvexPolyhedron, GeometryError> {
@@ -336,14 +378,15 @@ fn thickness(points: &[Point3<f64>], centre: &Point3<f64>) -> f64 {
     if least > 0.0 { least.sqrt() } else { 0.0 }
 }
 
-fn bounding_box(points: &[Point3<f64>]) -> (Point3<f64>, Vector3<f64>) {
+/// Middle of the bounding box.
+fn middle(points: &[Point3<f64>]) -> Point3<f64> {
     let Some(first) = points.first() else {
-        return (Point3::origin(), Vector3::zeros());
+        return Point3::origin();
     };
     let (low, high) = points
         .iter()
         .fold((*first, *first), |(low, high), p| (low.inf(p), high.sup(p)));
-    (nalgebra::center(&low, &high), (high - low) / 2.0)
+    nalgebra::center(&low, &high)
 }
 
 fn clamp_to_box(p: &Vector3<f64>, half: &Vector3<f64>) -> Vector3<f64> {

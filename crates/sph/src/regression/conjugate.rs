@@ -115,7 +115,12 @@ mod tests {
     fn solves_a_diagonal_system_from_any_start() {
         let diagonal: Vec<f64> = (1..60).map(|i| f64::from(i * i)).collect();
         let truth: Vec<f64> = (1..60).map(|i| f64::from(i).sin()).collect();
-        let apply = |x: &[f64]| x.iter().zip(&diagonal).map(|(x, d)| x * d).collect::<Vec<_>>();
+        let apply = |x: &[f64]| {
+            x.iter()
+                .zip(&diagonal)
+                .map(|(x, d)| x * d)
+                .collect::<Vec<_>>()
+        };
         let right = apply(&truth);
         let limits = Limits {
             iterations: 400,

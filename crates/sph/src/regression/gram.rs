@@ -344,7 +344,9 @@ impl Gram {
                 *r *= w;
             }
         }
-        let gradient = self.points.moments(samples.directions, &residual, self.degree);
+        let gradient = self
+            .points
+            .moments(samples.directions, &residual, self.degree);
         let mut gradient = gradient.as_slice().to_vec();
         for (i, g) in gradient.iter_mut().enumerate() {
             *g -= penalty.weight(index::degree_order(i).0) * beta[i];

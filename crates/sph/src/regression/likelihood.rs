@@ -84,8 +84,16 @@ fn probes(degree: usize, power: i32) -> Vec<Vec<f64>> {
             (0..unknowns)
                 .map(|i| {
                     let (l, _) = index::degree_order(i);
-                    let size = if l == 0 { 0.0 } else { roughness(l, power).sqrt() };
-                    if sign_bit(i as u64, probe as u64) { size } else { -size }
+                    let size = if l == 0 {
+                        0.0
+                    } else {
+                        roughness(l, power).sqrt()
+                    };
+                    if sign_bit(i as u64, probe as u64) {
+                        size
+                    } else {
+                        -size
+                    }
                 })
                 .collect()
         })
@@ -94,7 +102,9 @@ fn probes(degree: usize, power: i32) -> Vec<Vec<f64>> {
 
 /// One well mixed bit of two numbers (the finaliser of SplitMix64).
 fn sign_bit(i: u64, j: u64) -> bool {
-    let mut x = (i << 8 | j).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let mut x = (i << 8 | j)
+        .wrapping_add(1)
+        .wrapping_mul(0x9e37_79b9_7f4a_7c15);
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     (x ^ (x >> 31)) & 1 == 1
@@ -124,7 +134,11 @@ fn find_root<E>(
         let mut next = x - (value / slope).clamp(-LONGEST, LONGEST);
         if next <= low || next >= high {
             let bracketed = low > ends.0 && high < ends.1;
-            next = if bracketed { 0.5 * (low + high) } else { next.clamp(low, high) };
+            next = if bracketed {
+                0.5 * (low + high)
+            } else {
+                next.clamp(low, high)
+            };
         }
         if (next - x).abs() <= SHORTEST {
             return Ok(next);
@@ -141,7 +155,9 @@ mod tests {
 
     #[test]
     fn the_root_is_found_or_the_nearer_end_taken() {
-        let found = find_root(RANGE, START, |x| Ok::<_, ()>((x + 5.3) * 1.1 + (x + 5.3).powi(3)));
+        let found = find_root(RANGE, START, |x| {
+            Ok::<_, ()>((x + 5.3) * 1.1 + (x + 5.3).powi(3))
+        });
         assert!((found.unwrap() + 5.3).abs() <= 0.1);
         assert_eq!(find_root(RANGE, START, |_| Ok::<_, ()>(1.0)), Ok(-14.0));
         assert_eq!(find_root(RANGE, START, |_| Ok::<_, ()>(-1.0)), Ok(0.0));

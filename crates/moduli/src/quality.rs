@@ -1,0 +1,205 @@
+//! What a climb needs to know of a quality, and qualities given as plain functions.
+
+use grasp::QualityError;
+use nalgebra::Vector3;
+use sph::Direction;
+use sph::direction::{retract, tangent_frame};
+
+/// Linear models excess_j + g_j·u of functions of the contacts' tangent moves u.
+///
+/// u has two numbers a contact, radians, in the frame of [`sph::direction::tangent_frame`] at each
+/// contact. Flat storage, kept between steps.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LinearPieces {
+    dimension: usize,
+    excess: Vec<f64>,
+    slopes: Vec<f64>,
+}
+
+impl LinearPieces {
+    /// Forgets all pieces; the next ones have two numbers a contact.
+    pub fn reset(&mut self, contacts: usize) {
+        self.dimension = 2 * contacts;
+        self.excess.clear();
+        self.slopes.clear();
+    }
+
+    /// Adds a piece: its value above that of the least one, and its slope, zeros to be filled in.
+    pub fn push(&mut self, excess: f64) -> &mut [f64] {
+        let start = self.slopes.len();
+        self.excess.push(excess);
+        self.slopes.resize(start + self.dimension, 0.0);
+        &mut self.slopes[start..]
+    }
+
+    /// Number of pieces.
+    pub fn len(&self) -> usize {
+        self.excess.len()
+    }
+
+    /// Whether there is no piece.
+    pub fn is_empty(&self) -> bool {
+        self.excess.is_empty()
+    }
+
+    /// Numbers in a move, two a contact.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// Piece j: its excess and its slope g_j.
+    pub fn get(&self, j: usize) -> (f64, &[f64]) {
+        let start = j * self.dimension;
+        (
+            self.excess[j],
+            &self.slopes[start..start + self.dimension],
+        )
+    }
+
+    /// excess_j + g_j·u.
+    pub fn at(&self, j: usize, moves: &[f64]) -> f64 {
+        let (excess, slope) = self.get(j);
+        excess + dot(slope, moves)
+    }
+}
+
+/// A quality of contacts on surfaces of type `S` that an ascent can raise.
+///
+/// Implemented by [`crate::Objective`], exactly, and by [`ByDifferences`] for any function. The
+/// surface comes with every call, so that one quality can follow a deforming surface.
+pub trait Quality<S> {
+    /// The quality at contacts. A negative value says how far an open grasp is from closure.
+    fn value(&mut self, surface: &S, contacts: &[Direction]) -> Result<f64, QualityError>;
+
+    /// The functions that decide, or are about to, linearised at contacts; the deciding one first,
+    /// with excess 0. `pieces` is emptied before.
+    fn linearise(
+        &mut self,
+        surface: &S,
+        contacts: &[Direction],
+        pieces: &mut LinearPieces,
+    ) -> Result<(), QualityError>;
+
+    /// The slope of the deciding function alone, two numbers a contact; called where
+    /// [`Quality::value`] was called last.
+    fn slope(
+        &mut self,
+        surface: &S,
+        contacts: &[Direction],
+        slope: &mut [f64],
+    ) -> Result<(), QualityError>;
+
+    /// Values computed so far.
+    fn evaluations(&self) -> usize;
+}
+
+/// Any function Q(surface, contacts), with slopes by central differences.
+///
+/// Costs 4m values a slope for m contacts. The function should be positive for grasps worth having
+/// and continuous; a value that is not a number is never accepted.
+#[derive(Clone, Debug)]
+pub struct ByDifferences<F> {
+    function: F,
+    delta: f64,
+    evaluations: usize,
+}
+
+impl<F> ByDifferences<F> {
+    /// Q and the step of the differences, radians; 1e-5 suits functions with ten good digits.
+    pub fn new(function: F, delta: f64) -> Self {
+        Self {
+            function,
+            delta,
+            evaluations: 0,
+        }
+    }
+}
+
+impl<S, F: FnMut(&S, &[Direction]) -> f64> Quality<S> for ByDifferences<F> {
+    fn value(&mut self, surface: &S, contacts: &[Direction]) -> Result<f64, QualityError> {
+        self.evaluations += 1;
+        Ok((self.function)(surface, contacts))
+    }
+
+    fn linearise(
+        &mut self,
+        surface: &S,
+        contacts: &[Direction],
+        pieces: &mut LinearPieces,
+    ) -> Result<(), QualityError> {
+        pieces.reset(contacts.len());
+        self.slope(surface, contacts, pieces.push(0.0))
+    }
+
+    fn slope(
+        &mut self,
+        surface: &S,
+        contacts: &[Direction],
+        slope: &mut [f64],
+    ) -> Result<(), QualityError> {
+        let mut moved = contacts.to_vec();
+        for (i, p) in contacts.iter().enumerate() {
+            let (e1, e2) = tangent_frame(p);
+            for (k, e) in [e1, e2].iter().enumerate() {
+                let mut shifted = |h: f64| {
+                    moved[i] = retract(p, &(e * h));
+                    self.evaluations += 1;
+                    (self.function)(surface, &moved)
+                };
+                let rise = shifted(self.delta) - shifted(-self.delta);
+                slope[2 * i + k] = rise / (2.0 * self.delta);
+            }
+            moved[i] = *p;
+        }
+        Ok(())
+    }
+
+    fn evaluations(&self) -> usize {
+        self.evaluations
+    }
+}
+
+/// The slope of a 3-D derivative along the tangent frame of a contact.
+pub(crate) fn in_frame(p: &Direction, by_move: &Vector3<f64>) -> [f64; 2] {
+    let (e1, e2) = tangent_frame(p);
+    [e1.dot(by_move), e2.dot(by_move)]
+}
+
+/// The direction after a tangent move in its frame.
+pub(crate) fn moved(p: &Direction, u: &[f64]) -> Direction {
+    let (e1, e2) = tangent_frame(p);
+    retract(p, &(e1 * u[0] + e2 * u[1]))
+}
+
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+pub(crate) fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_are_slopes_in_the_frames() {
+        let target = Vector3::new(0.3, -0.2, 0.9);
+        let mut quality = ByDifferences::new(
+            |_: &(), p: &[Direction]| p.iter().map(|p| p.dot(&target)).sum(),
+            1e-5,
+        );
+        let contacts = [Vector3::x_axis(), Vector3::z_axis()];
+        let mut pieces = LinearPieces::default();
+        quality.linearise(&(), &contacts, &mut pieces).unwrap();
+        assert_eq!((pieces.len(), pieces.dimension()), (1, 4));
+        assert_eq!(Quality::<()>::evaluations(&quality), 8);
+        for (i, p) in contacts.iter().enumerate() {
+            let exact = in_frame(p, &target);
+            for k in 0..2 {
+                assert!((pieces.get(0).1[2 * i + k] - exact[k]).abs() <= 1e-9);
+            }
+        }
+    }
+}
