@@ -43,6 +43,10 @@ pub(crate) enum Command {
     Distance(DistanceOptions),
     /// Quality of given grasps.
     Quality(QualityOptions),
+    /// Improve grasps on their object.
+    Ascend(AscendOptions),
+    /// Carry grasps from one object to another.
+    Transfer(TransferOptions),
     /// All of it: a cloud of an object never seen before, ranked grasps and a picture.
     Grasp(GraspOptions),
     /// What a file of ours holds.
@@ -169,6 +173,80 @@ pub(crate) struct QualityOptions {
     /// Result, N×3 in .npy: quality, lower, upper.
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) convention: ConventionOptions,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum AscentScheme {
+    /// Monotone, from analytic gradients of all deciding facets.
+    Ours,
+    /// 1,000 fixed steps along forward differences.
+    Paper,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct AscendOptions {
+    /// A shape that `fit` wrote.
+    pub(crate) shape: PathBuf,
+    /// grasps.json in the frame of the shape's cloud; contacts are projected to the surface.
+    pub(crate) grasps: PathBuf,
+    /// The improved grasps, as grasps.json.
+    #[arg(short, long)]
+    pub(crate) output: Option<PathBuf>,
+    /// Every step of every grasp, as JSON.
+    #[arg(long)]
+    pub(crate) trace: Option<PathBuf>,
+    #[arg(long, value_enum, default_value_t = AscentScheme::Ours)]
+    pub(crate) scheme: AscentScheme,
+    /// Least distance between any two contacts, metres.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) least_separation: Option<f64>,
+    /// Largest distance between any two contacts, metres.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) reach: Option<f64>,
+    /// Part of the surface that contacts may touch: X,Y,Z,DEGREES, the cone around a direction from
+    /// the centre. Several: in all of them.
+    #[arg(long, value_name = "X,Y,Z,DEGREES", allow_hyphen_values = true)]
+    pub(crate) allow: Vec<String>,
+    /// Grasps must be closed under this smaller friction too.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) closed_at_friction: Option<f64>,
+    #[command(flatten)]
+    pub(crate) convention: ConventionOptions,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TransferScheme {
+    /// Adaptive stations, monotone ascents, recovery from poor ends.
+    Ours,
+    /// Eleven stations with 100 fixed steps each.
+    Paper,
+    /// The contacts keep their directions.
+    Naive,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TransferOptions {
+    /// The shape that the grasps are on.
+    #[arg(long)]
+    pub(crate) from: PathBuf,
+    /// The shape that they are carried to.
+    #[arg(long)]
+    pub(crate) to: PathBuf,
+    /// grasps.json in the frame of the first shape's cloud.
+    pub(crate) grasps: PathBuf,
+    /// The grasps on the second shape, as grasps.json in the frame of its cloud.
+    #[arg(short, long)]
+    pub(crate) output: Option<PathBuf>,
+    /// Every step of every grasp, as JSON.
+    #[arg(long)]
+    pub(crate) trace: Option<PathBuf>,
+    #[arg(long, value_enum, default_value_t = TransferScheme::Ours)]
+    pub(crate) scheme: TransferScheme,
+    /// Look for better ends even where the first is good; about five times slower.
+    #[arg(long)]
+    pub(crate) thorough: bool,
     #[command(flatten)]
     pub(crate) convention: ConventionOptions,
 }

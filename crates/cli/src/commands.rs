@@ -1,5 +1,6 @@
 //! One module a command.
 
+pub(crate) mod ascend;
 pub(crate) mod distance;
 pub(crate) mod eval;
 pub(crate) mod fit;
@@ -7,3 +8,4 @@ pub(crate) mod grasp;
 pub(crate) mod info;
 pub(crate) mod mesh;
 pub(crate) mod quality;
+pub(crate) mod transfer;

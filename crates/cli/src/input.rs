@@ -13,6 +13,9 @@ use crate::args::{CloudOptions, ConventionOptions};
 use crate::failure::Failure;
 use crate::output::warn;
 
+/// Share of unseen directions from which on the user is told.
+const GUESSED: f64 = 0.1;
+
 /// The bytes of a file.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     std::fs::read(path).map_err(|e| Failure::input(path, e))
@@ -54,12 +57,19 @@ pub(crate) fn fit(cloud: &PointCloud, name: &str, options: &CloudOptions) -> Res
         degree: options.degree,
         lambda: options.lambda,
     };
-    shape::fit::fit(cloud, &settings).map_err(|e| match e {
+    let fit = shape::fit::fit(cloud, &settings).map_err(|e| match e {
         FitError::Regression(sph::regression::RegressionError::Penalty { lambda }) => {
             Failure::usage(format!("--lambda {lambda}: expected a number ≥ 0"))
         }
         other => Failure::refused(format!("{name}: {other}")),
-    })
+    })?;
+    if fit.star.unseen > GUESSED {
+        warn(format!(
+            "{name}: {:.0} % of the directions from the mean hold no point; the surface there is a guess",
+            100.0 * fit.star.unseen
+        ));
+    }
+    Ok(fit)
 }
 
 /// A shape file.

@@ -6,6 +6,7 @@ mod failure;
 mod input;
 mod numpy;
 mod output;
+mod placed;
 mod plan;
 
 use std::process::ExitCode;
@@ -38,6 +39,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Mesh(options) => commands::mesh::run(options),
         Command::Distance(options) => commands::distance::run(options, common),
         Command::Quality(options) => commands::quality::run(options, common),
+        Command::Ascend(options) => commands::ascend::run(options, common),
+        Command::Transfer(options) => commands::transfer::run(options, common),
         Command::Grasp(options) => commands::grasp::run(options, common),
         Command::Info(options) => commands::info::run(options),
     }

@@ -294,6 +294,36 @@ fn bad_input_names_the_file_and_the_place() {
 }
 
 #[test]
+fn points_that_surround_nothing_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let sheet: String = (0..900)
+        .map(|i| {
+            format!(
+                "{} {} 0\n",
+                0.003 * f64::from(i % 30),
+                0.003 * f64::from(i / 30)
+            )
+        })
+        .collect();
+    std::fs::write(folder.path().join("sheet.xyz"), sheet).unwrap();
+    refused(
+        &moduli(folder.path(), &["fit", "sheet.xyz"]),
+        4,
+        &["sheet.xyz", "hold no point"],
+    );
+    std::fs::write(
+        folder.path().join("line.csv"),
+        "x,y,z\n0,0,0\n1,0,0\n2,0,0\n3,0,0\n4,0,0\n",
+    )
+    .unwrap();
+    refused(
+        &moduli(folder.path(), &["grasp", "line.csv", "-o", "x"]),
+        4,
+        &["hold no point"],
+    );
+}
+
+#[test]
 fn bad_usage_is_exit_2() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();

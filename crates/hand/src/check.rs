@@ -56,7 +56,7 @@ pub fn check_hand(hand: &Hand, self_clearance: f64) -> Result<Vec<Finding>, Kine
         reach(hand, preshape, &poses, &mut findings);
     }
     geometry(hand, &mut findings);
-    findings.sort_by(|a, b| b.severity.cmp(&a.severity));
+    findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     Ok(findings)
 }
 

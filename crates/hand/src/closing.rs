@@ -5,6 +5,9 @@ use nalgebra::Isometry3;
 use crate::collision::{CollisionObject, Precision, first_close_pair};
 use crate::hand::{Finger, Hand};
 
+/// A finger that could close no farther than this in a step has come to rest; in units of closing.
+const LEAST_STEP: f64 = 1e-7;
+
 /// When fingers have arrived and what must stay clear (paper, Sec. IV-C).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClosingRules {
@@ -197,6 +200,10 @@ fn close_finger(
         }
         let tip_speed = fastest(finger, |link| finger.tip_links.contains(&link));
         let tip_step = (tip_lower - aim) / tip_speed;
+        if !(tip_step > LEAST_STEP) {
+            // As near as the facets tell apart, and that is not near enough.
+            return Err(Rejection::NoContact { finger: index });
+        }
         closed = (closed + tip_step.min(free_step)).min(end);
         apply(hand, finger, &start, closed, state);
         state.steps += 1;

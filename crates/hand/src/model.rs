@@ -29,7 +29,8 @@ pub enum Geometry {
         /// Radius.
         radius: f64,
     },
-    /// The convex hull of a mesh's vertices.
+    /// The convex hull of a mesh's vertices (simplified to about 100 vertices and enlarged to
+    /// hold them all where it takes part in collision tests).
     Hull {
         /// The vertices of the mesh, already scaled.
         points: Vec<Point3<f64>>,

@@ -231,7 +231,7 @@ impl<'a> Problem<'a> {
             .map(|c| first.cross(&(c.position.coords - centre)))
             .max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))
             .and_then(|c| c.try_normalize(1e-9))
-            .unwrap_or_else(|| Vector3::z());
+            .unwrap_or_else(Vector3::z);
         let side = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
         let from = UnitVector3::try_new(across * side + spread * 0.8, 1e-6);
         let from = from.unwrap_or(Vector3::z_axis());

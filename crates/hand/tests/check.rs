@@ -1,4 +1,5 @@
 //! Findings about hands: a good one has none to worry about, spoilt ones say what is wrong.
+#![allow(clippy::print_stderr)]
 
 mod common;
 

@@ -143,3 +143,25 @@ fn every_reason_for_rejection_is_met() {
     });
     assert!(crossed, "fingers meet around something tiny");
 }
+
+#[test]
+fn an_object_too_large_for_the_mesh_is_refused_and_never_closed_on_for_ever() {
+    // A scan in millimetres read as metres: facets are centimetres off.
+    let huge = shape::RadialShape::sphere(6, 40.0).unwrap();
+    assert!(matches!(
+        hand::CollisionObject::new(&huge),
+        Err(hand::ObjectError::Coarse { .. })
+    ));
+    // A grid that the caller chose, coarser than the gap that tips should close.
+    let ball = shape::RadialShape::sphere(6, 0.045).unwrap();
+    let coarse = hand::CollisionObject::with_grid(&ball, 8, 8).unwrap();
+    assert!(coarse.mesh_error() > 1e-3);
+    let hand = hand::schunk_sdh().unwrap();
+    let from = nalgebra::Vector3::z_axis();
+    for distance in [0.15, 0.17, 0.19] {
+        let pose = hand::aimed(&hand, &from, distance + 0.045, 0.3);
+        let start = &hand.preshapes()[0].joints;
+        let closed = hand::close_hand(&coarse, &hand, &pose, start, &hand::ClosingRules::default());
+        assert!(closed.is_err());
+    }
+}

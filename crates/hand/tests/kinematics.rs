@@ -1,4 +1,5 @@
 //! Forward kinematics against poses computed by another program and against known points.
+#![allow(clippy::print_stderr)]
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -42,7 +42,6 @@ fn contacts_that_the_hand_made_once_are_reached_again() {
             }
         }
     }
-    eprintln!("{reached} of {tried} reached");
     assert!(
         tried == 12 && 4 * reached >= 3 * tried,
         "{reached} of {tried}"

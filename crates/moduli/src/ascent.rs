@@ -1,10 +1,11 @@
 //! Climbing in quality on one surface.
 
 mod bundle;
+mod climber;
 mod monotone;
 mod paper;
 
-pub use monotone::MonotoneAscent;
+pub use monotone::{AscentError, MonotoneAscent};
 pub use paper::PaperAscent;
 
 use sph::Direction;
@@ -17,7 +18,7 @@ pub struct Step<'a> {
     /// Q there.
     pub quality: f64,
     /// Slope of Q that is left, per radian: of the one gradient in the paper's ascent, of what all
-    /// deciding facets allow in ours; 0 at a maximum.
+    /// deciding facets and limits allow in ours (see [`Ascent::stationarity`]); 0 at a maximum.
     pub stationarity: f64,
 }
 
@@ -30,6 +31,12 @@ pub struct Ascent {
     pub start_quality: f64,
     /// Q at the end.
     pub quality: f64,
+    /// Q at the end, or minus the distance from force closure where the grasp is open.
+    pub margin: f64,
+    /// Slope of Q left at the end, per radian: the norm of the gradient in the paper's ascent; in
+    /// ours |u|/ρ for the u that maximises the least of the linearised facets less |u|²/2ρ within
+    /// the limits, ρ = 0.01 (the gradient of the Moreau envelope). 0 exactly at a maximum.
+    pub stationarity: f64,
     /// Qualities computed on the way.
     pub evaluations: usize,
 }

@@ -5,14 +5,17 @@ use grasp::{
     QualityError, Setup, TorqueLength, Workspace,
 };
 use nalgebra::Point3;
-use shape::Surface;
+use shape::{Differential, Surface};
 use sph::Direction;
 use sph::direction::even_directions;
 
 use crate::point::contact_on;
+use crate::quality::{LinearPieces, Quality, in_frame};
 
 /// Points of the surface among which the farthest from the centre is sought.
 const EXTENT_DIRECTIONS: usize = 2_000;
+/// Facets that are linearised, the weakest first.
+const FACETS: usize = 48;
 
 /// Q of contacts on a surface: the convention with everything the surface decides filled in.
 #[derive(Clone, Debug)]
@@ -22,6 +25,18 @@ pub struct Objective {
     workspace: Workspace,
     contacts: Vec<Contact>,
     evaluations: usize,
+    scratch: Scratch,
+}
+
+/// What linearisations reuse.
+#[derive(Clone, Debug, Default)]
+struct Scratch {
+    /// The margin computed last, and where.
+    last: Option<Margin>,
+    at: Vec<Direction>,
+    facets: Vec<ActiveFacet>,
+    slopes: Vec<Differential>,
+    gradient: Gradient,
 }
 
 impl Objective {
@@ -55,7 +70,18 @@ impl Objective {
             workspace: Workspace::new(),
             contacts: Vec::new(),
             evaluations: 0,
+            scratch: Scratch::default(),
         }
+    }
+
+    /// The same quality with another friction coefficient: what is still closed under a smaller one
+    /// has that much of its friction cones to spare.
+    pub fn with_friction(&self, friction: f64) -> Self {
+        let mut other = self.clone();
+        other.convention.friction = friction;
+        other.evaluations = 0;
+        other.scratch.last = None;
+        other
     }
 
     /// The convention with its torque length resolved.
@@ -132,6 +158,118 @@ impl Objective {
         let quality = self.quality(&contacts);
         self.contacts = contacts;
         quality
+    }
+}
+
+/// The epsilon quality, and minus the distance from closure of open grasps; slopes by the chain rule
+/// dQ = Σᵢ (df(pᵢ)ᵀ ∂Q/∂cᵢ + dn(pᵢ)ᵀ ∂Q/∂nᵢ) · uᵢ through the facets that are nearly the nearest.
+///
+/// An objective belongs to the surface that it was made on.
+impl<S: Surface> Quality<S> for Objective {
+    fn value(&mut self, surface: &S, contacts: &[Direction]) -> Result<f64, QualityError> {
+        self.margin_at(surface, contacts).map(|margin| margin.value)
+    }
+
+    fn linearise(
+        &mut self,
+        surface: &S,
+        contacts: &[Direction],
+        pieces: &mut LinearPieces,
+    ) -> Result<(), QualityError> {
+        pieces.reset(contacts.len());
+        let margin = match self.scratch.last {
+            Some(margin) if self.scratch.at == contacts => margin,
+            _ => self.margin_at(surface, contacts)?,
+        };
+        self.differentiate(surface, contacts);
+        let mut facets = std::mem::take(&mut self.scratch.facets);
+        facets.clear();
+        if margin.closed {
+            let band = 0.25 * margin.value + 1e-3;
+            let realised = std::mem::take(&mut self.contacts);
+            let found = self.near_active_facets(&realised, band, &mut facets);
+            self.contacts = realised;
+            found?;
+            facets.sort_by(|a, b| a.offset.total_cmp(&b.offset));
+            facets.truncate(FACETS);
+        } else {
+            facets.push(margin.facet);
+        }
+        for facet in &facets {
+            self.chain(contacts, facet, pieces.push(facet.offset - margin.value))?;
+        }
+        self.scratch.facets = facets;
+        Ok(())
+    }
+
+    fn slope(
+        &mut self,
+        surface: &S,
+        contacts: &[Direction],
+        slope: &mut [f64],
+    ) -> Result<(), QualityError> {
+        let margin = match self.scratch.last {
+            Some(margin) if self.scratch.at == contacts => margin,
+            _ => self.margin_at(surface, contacts)?,
+        };
+        self.differentiate(surface, contacts);
+        self.chain(contacts, &margin.facet, slope)
+    }
+
+    fn evaluations(&self) -> usize {
+        self.evaluations
+    }
+}
+
+impl Objective {
+    fn margin_at(
+        &mut self,
+        surface: &impl Surface,
+        directions: &[Direction],
+    ) -> Result<Margin, QualityError> {
+        let mut contacts = std::mem::take(&mut self.contacts);
+        contacts.clear();
+        contacts.extend(directions.iter().map(|p| contact_on(surface, p)));
+        let margin = self.margin(&contacts);
+        self.contacts = contacts;
+        self.scratch.last = margin.as_ref().ok().copied();
+        self.scratch.at.clear();
+        self.scratch.at.extend_from_slice(directions);
+        margin
+    }
+
+    /// f, n and their derivatives at the contacts.
+    fn differentiate(&mut self, surface: &impl Surface, directions: &[Direction]) {
+        self.scratch.slopes.clear();
+        self.contacts.clear();
+        for p in directions {
+            let at = surface.differential(p);
+            self.contacts.push(Contact {
+                position: at.position,
+                inward_normal: at.inward_normal,
+            });
+            self.scratch.slopes.push(at);
+        }
+    }
+
+    /// The slope of one facet's offset along the contacts' tangent frames.
+    fn chain(
+        &mut self,
+        directions: &[Direction],
+        facet: &ActiveFacet,
+        slope: &mut [f64],
+    ) -> Result<(), QualityError> {
+        let mut gradient = std::mem::take(&mut self.scratch.gradient);
+        let result = self.facet_gradient(&self.contacts, facet, FrameRule::Tangent, &mut gradient);
+        if result.is_ok() {
+            for (i, at) in self.scratch.slopes.iter().enumerate() {
+                let by_move = at.position_slope.transpose() * gradient.positions[i]
+                    + at.normal_slope.transpose() * gradient.normals[i];
+                slope[2 * i..2 * i + 2].copy_from_slice(&in_frame(&directions[i], &by_move));
+            }
+        }
+        self.scratch.gradient = gradient;
+        result
     }
 }
 

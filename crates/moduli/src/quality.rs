@@ -32,6 +32,13 @@ impl LinearPieces {
         &mut self.slopes[start..]
     }
 
+    /// Adds `value` to every excess.
+    pub fn raise(&mut self, value: f64) {
+        for excess in &mut self.excess {
+            *excess += value;
+        }
+    }
+
     /// Number of pieces.
     pub fn len(&self) -> usize {
         self.excess.len()

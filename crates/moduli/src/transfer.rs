@@ -1,11 +1,18 @@
 //! Carrying grasps from one shape to another (Sec. IV-E).
 
+mod continuation;
+mod matrix;
+
+pub use continuation::{Continuation, Recovery, Splitting};
+pub use matrix::{Job, Matrix, Progress, all_pairs, run_jobs};
+
 use grasp::{Convention, QualityError};
 use nalgebra::Point3;
-use shape::{DeformationError, RadialField};
+use shape::RadialField;
+use shape::space::SpaceError;
 use sph::Direction;
 
-use crate::ascent::{Ascent, MonotoneAscent, PaperAscent, Step};
+use crate::ascent::{Ascent, PaperAscent, Step};
 use crate::objective::Objective;
 
 /// Why a transfer has no end.
@@ -16,7 +23,13 @@ pub enum TransferError {
     Quality(#[from] QualityError),
     /// The shapes could not be combined.
     #[error(transparent)]
-    Deformation(#[from] DeformationError),
+    Deformation(#[from] SpaceError),
+    /// A job names an object or a grasp that is not there.
+    #[error("no transfer of grasp {} from object {} to object {}", job.grasp, job.from, job.to)]
+    Job {
+        /// The job.
+        job: Job,
+    },
 }
 
 /// A grasp that has arrived.
@@ -30,6 +43,36 @@ pub struct Transferred {
     pub quality: f64,
     /// Qualities computed on the way.
     pub evaluations: usize,
+    /// Slope of Q that is left on the target, per radian ([`Ascent::stationarity`]); not measured
+    /// by the naive transfer.
+    pub stationarity: Option<f64>,
+    /// Why the grasp ended open; none for a closed one.
+    pub open: Option<StillOpen>,
+}
+
+/// Why no closed grasp was found on the target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StillOpen {
+    /// Distance of the best grasp from force closure, where the scheme measures it.
+    pub distance: Option<f64>,
+    /// The parameter of the curve at which closure was lost; none when the grasp was open from the
+    /// start or was never followed.
+    pub lost_at: Option<f64>,
+    /// Climbs made on the target.
+    pub climbs: usize,
+}
+
+impl std::fmt::Display for StillOpen {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "no closed grasp after {} climbs on the target", self.climbs)?;
+        if let Some(distance) = self.distance {
+            write!(f, ", the best is {distance:.4} from closure")?;
+        }
+        match self.lost_at {
+            Some(t) => write!(f, "; closure was lost at t = {t:.3}"),
+            None => write!(f, "; no path kept closure"),
+        }
+    }
 }
 
 /// What both schemes need: where from, where to, and how quality is measured.
@@ -54,11 +97,18 @@ impl Transfer<'_> {
     /// The naive transfer: the contacts keep their θ and φ.
     pub fn naive(&self, contacts: &[Direction]) -> Result<Transferred, TransferError> {
         let start_quality = self.objective(self.from).quality_at(self.from, contacts)?;
+        let quality = self.objective(self.to).quality_at(self.to, contacts)?;
         Ok(Transferred {
             contacts: contacts.to_vec(),
             start_quality,
-            quality: self.objective(self.to).quality_at(self.to, contacts)?,
+            quality,
             evaluations: 2,
+            stationarity: None,
+            open: (quality <= 0.0).then_some(StillOpen {
+                distance: None,
+                lost_at: None,
+                climbs: 0,
+            }),
         })
     }
 }
@@ -98,78 +148,6 @@ impl PaperTransfer {
     }
 }
 
-/// Our transfer: a monotone ascent at each station, a longer one on the target, and a second path.
-///
-/// A continuation can follow an optimum into a poor corner, while the naive transfer may land near
-/// a good one; both are climbed on the target and the better is returned, so the result is never
-/// below the naive transfer.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Continuation {
-    /// n intervals, n + 1 stations.
-    pub intervals: usize,
-    /// The ascent at each station but the last.
-    pub along: MonotoneAscent,
-    /// The ascent on the target.
-    pub at_end: MonotoneAscent,
-}
-
-impl Default for Continuation {
-    /// Four intervals with short ascents, then a full one.
-    fn default() -> Self {
-        let at_end = MonotoneAscent::default();
-        Self {
-            intervals: 4,
-            along: MonotoneAscent {
-                steps: 20,
-                ..at_end
-            },
-            at_end,
-        }
-    }
-}
-
-impl Continuation {
-    /// The shapes γ(k/n), k = 0 … n; shared by all grasps of a pair.
-    pub fn stations(&self, transfer: &Transfer) -> Result<Vec<RadialField>, TransferError> {
-        stations(transfer, self.intervals)
-    }
-
-    /// Carries one grasp over `stations`; `trace` sees (t, state) of the continuation.
-    pub fn carry(
-        &self,
-        transfer: &Transfer,
-        stations: &[RadialField],
-        contacts: &[Direction],
-        mut trace: impl FnMut(f64, &Step),
-    ) -> Result<Transferred, TransferError> {
-        let climb = |t: f64| if t < 1.0 { self.along } else { self.at_end };
-        let followed = carry_over(
-            transfer,
-            stations,
-            contacts,
-            |t, station, here, objective| {
-                climb(t).climb(station, here, objective, |step| trace(t, step))
-            },
-        )?;
-        let target = &stations[stations.len().saturating_sub(1)..];
-        let jumped = carry_over(transfer, target, contacts, |_, station, here, objective| {
-            self.at_end.climb(station, here, objective, |_| {})
-        })?;
-        let evaluations = followed.evaluations + jumped.evaluations;
-        let start_quality = followed.start_quality;
-        let best = if jumped.quality > followed.quality {
-            jumped
-        } else {
-            followed
-        };
-        Ok(Transferred {
-            evaluations,
-            start_quality,
-            ..best
-        })
-    }
-}
-
 fn stations(transfer: &Transfer, intervals: usize) -> Result<Vec<RadialField>, TransferError> {
     let n = intervals.max(1);
     (0..=n)
@@ -195,22 +173,37 @@ fn carry_over(
         start_quality: 0.0,
         quality: 0.0,
         evaluations: 0,
+        stationarity: None,
+        open: None,
     };
-    let last = stations.len().saturating_sub(1).max(1) as f64;
+    let mut lost_at = None;
     for (k, station) in stations.iter().enumerate() {
         let mut objective = transfer.objective(station);
-        let t = if k + 1 == stations.len() {
-            1.0
-        } else {
-            k as f64 / last
-        };
+        let t = parameter(k, stations.len());
         let ascent = climb(t, station, &arrived.contacts, &mut objective)?;
         if k == 0 {
             arrived.start_quality = ascent.start_quality;
+        } else if arrived.quality > 0.0 && ascent.quality <= 0.0 {
+            lost_at = Some(t);
         }
         arrived.quality = ascent.quality;
         arrived.evaluations += ascent.evaluations;
+        arrived.stationarity = Some(ascent.stationarity);
         arrived.contacts = ascent.contacts;
     }
+    arrived.open = (arrived.quality <= 0.0).then_some(StillOpen {
+        distance: None,
+        lost_at,
+        climbs: 1,
+    });
     Ok(arrived)
+}
+
+/// t of station k of `count`.
+fn parameter(k: usize, count: usize) -> f64 {
+    if k + 1 >= count {
+        1.0
+    } else {
+        k as f64 / (count - 1) as f64
+    }
 }

@@ -26,6 +26,10 @@ pub const PENALTY_POWER: i32 = 2;
 /// 2 mm of noise still more than 0.2) and a bowl with its thin wall 0.71.
 pub const MOST_MULTIPLE: f64 = 0.2;
 
+/// [`StarShape::unseen`] above which a cloud is refused: a line, a sheet or a handful of points. A
+/// single view of a solid object leaves about a quarter of the directions open.
+pub const MOST_UNSEEN: f64 = 0.4;
+
 /// The λ of the marginal likelihood times this. Edges and steps, which no degree of 50 can follow,
 /// are no white noise, but the likelihood takes them for it and smooths too much; on real scans the
 /// error at held-out points is least around this factor.
@@ -71,6 +75,16 @@ pub enum FitError {
         /// The clearest of them.
         worst: Crossing,
     },
+    /// Most of the surface was not seen.
+    #[error(
+        "{percent:.0} % of the directions from the mean hold no point (limit {limit_percent:.0} %): the points surround nothing; a scan from more sides is needed",
+        percent = 100.0 * unseen,
+        limit_percent = 100.0 * MOST_UNSEEN,
+    )]
+    Unseen {
+        /// Share of the directions without a point.
+        unseen: f64,
+    },
     /// The surface leaves the data by far, and no penalty tried keeps it close.
     #[error(
         "the surface reaches {reached:.4} m where the data end at {seen:.4} m; a lower degree or a more complete scan may help"
@@ -110,7 +124,8 @@ pub struct Fit {
 /// Fits r(p) = Σ β Y to the cloud seen from its mean (Sec. III-B and IV-A of the paper), with a
 /// penalty, and proves the result positive.
 ///
-/// A cloud whose surface is met twice in more than [`MOST_MULTIPLE`] of the directions is refused.
+/// A cloud whose surface is met twice in more than [`MOST_MULTIPLE`] of the directions is refused, and
+/// one that leaves more than [`MOST_UNSEEN`] of them open.
 /// Points that are both far from the surface and alone are outliers: they lose their weight and
 /// the fit is repeated, at most four times; a cloud without them is fitted once. Directions in
 /// which nothing was seen take part with a membrane spanned from what was seen around them. A λ
@@ -131,6 +146,11 @@ pub fn fit(cloud: &PointCloud, settings: &FitSettings) -> Result<Fit, FitError> 
             outliers.extend(stray.iter().map(|i| view.index[*i]));
             round += 1;
             continue;
+        }
+        if star.unseen > MOST_UNSEEN {
+            return Err(FitError::Unseen {
+                unseen: star.unseen,
+            });
         }
         round += 1;
         let solved = view.solve(settings, &star)?;

@@ -26,7 +26,7 @@ pub use fit::{Fit, FitError, FitSettings};
 pub use immersion::{Immersion, SphericalError};
 pub use point_cloud::{CloudError, PointCloud};
 pub use radial::{RadialError, RadialShape};
-pub use radial_field::{DeformationError, RadialField};
+pub use radial_field::RadialField;
 pub use spherical::SphericalShape;
 pub use spherical_fit::{SphericalFit, SphericalFitError, fit_spherical};
 pub use star::{Crossing, StarShape, star_shape};

@@ -281,7 +281,7 @@ mod tests {
         let degree = 24;
         let basis = Basis::new(degree);
         let mut work = basis.workspace();
-        for (k, (theta, phi)) in [(0.0, 0.0), (1.5708, 0.0083), (0.0065, 3.1), (2.2, 4.71)]
+        for (k, (theta, phi)) in [(0.0, 0.0), (1.57, 0.0083), (0.0065, 3.1), (2.2, 4.71)]
             .into_iter()
             .enumerate()
         {

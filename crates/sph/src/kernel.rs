@@ -29,11 +29,16 @@ impl Kernel {
         let beta = std::f64::consts::PI * width as f64 * (1.0 - 0.5 / oversampling);
         let degree = width + 4;
         let mut powers = vec![[[0.0; TAPS]; 3]; degree + 1];
+        let cosines = cosines(degree + 1);
         for tap in 0..width {
             let centre = 0.5 * (width as f64 - 1.0) - tap as f64;
+            // Chebyshev points of [−½, ½].
+            let jets: Vec<[f64; 3]> = (0..=degree)
+                .map(|i| window_jet(beta, width, 0.5 * cosines[2 * i + 1] + centre))
+                .collect();
             for part in 0..3 {
-                let window = |u: f64| window_jet(beta, width, u + centre)[part];
-                for (d, c) in monomials(degree, window).into_iter().enumerate() {
+                let values: Vec<f64> = jets.iter().map(|jet| jet[part]).collect();
+                for (d, c) in monomials(&values, &cosines).into_iter().enumerate() {
                     powers[degree - d][part][tap] = c;
                 }
             }
@@ -124,11 +129,17 @@ fn bessel(order: usize, x: f64) -> f64 {
     sum
 }
 
-/// Coefficients of 1, u, u², … of the Chebyshev interpolant of f on [−½, ½].
-fn monomials(degree: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
-    let nodes = degree + 1;
-    let angle = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / nodes as f64;
-    let values: Vec<f64> = (0..nodes).map(|i| f(0.5 * angle(i).cos())).collect();
+/// cos(π j / 2n) for j = 0 … 4n − 1.
+fn cosines(nodes: usize) -> Vec<f64> {
+    (0..4 * nodes)
+        .map(|j| (std::f64::consts::PI * j as f64 / (2 * nodes) as f64).cos())
+        .collect()
+}
+
+/// Coefficients of 1, u, u², … of the interpolant of values at the Chebyshev points of [−½, ½].
+fn monomials(values: &[f64], cosines: &[f64]) -> Vec<f64> {
+    let nodes = values.len();
+    let degree = nodes - 1;
     let mut sum = vec![0.0; nodes];
     // T_0 and T_1 as polynomials in t = 2u; T_{k+1} = 2 t T_k − T_{k−1}.
     let (mut before, mut here) = (vec![0.0; nodes], vec![0.0; nodes]);
@@ -138,7 +149,7 @@ fn monomials(degree: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
     }
     for k in 0..nodes {
         let projection: f64 = (0..nodes)
-            .map(|i| values[i] * (k as f64 * angle(i)).cos())
+            .map(|i| values[i] * cosines[k * (2 * i + 1) % cosines.len()])
             .sum();
         let scale = if k == 0 { 1.0 } else { 2.0 } / nodes as f64;
         for (s, t) in sum.iter_mut().zip(&before) {

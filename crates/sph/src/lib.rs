@@ -3,6 +3,11 @@
 //! The basis is the paper's: real, orthonormal spherical harmonics without the Condon–Shortley
 //! phase (Sec. II-C), stored at position l² + l + m. See `CONVENTIONS.md`.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "loops over lanes go by index, so that they become vector instructions"
+)]
+
 pub mod basis;
 pub mod batch;
 pub mod bounds;

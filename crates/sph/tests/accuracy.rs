@@ -1,4 +1,5 @@
 //! Owns the table of docs/accuracy.md: every row is measured here and must stay below what it states.
+#![allow(clippy::print_stderr, reason = "says what was measured or left out")]
 
 use std::collections::BTreeMap;
 
@@ -148,7 +149,7 @@ fn measured() -> BTreeMap<&'static str, f64> {
     let back = rotate(&rotate(&beta, &turn), &turn.inverse());
     rows.insert("rotation and back, L = 100", back.distance(&beta) / norm);
     rows.insert("fit against QR, L = 20, even samples", regression(20, 1.0));
-    rows.insert("fit against QR, L = 20, aspect 10", regression(20, 10.0));
+    rows.insert("fit against QR, L = 20, aspect 6", regression(20, 6.0));
     rows
 }
 

@@ -1,4 +1,5 @@
 //! Values of Y_{l,m} and its gradient against independent high-precision ones.
+#![allow(clippy::print_stderr, reason = "says what was measured or left out")]
 
 use sph::{Basis, Direction, Harmonic, SphericalCoords};
 

@@ -12,7 +12,7 @@ use super::tree::{Content, Node, Tree};
 const STACK: usize = 64;
 
 /// Why an object cannot take part in collision tests.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum ObjectError {
     /// Too coarse or too fine a grid.
     #[error("a grid of {rows} x {columns} is not between 8 x 8 and 4096 x 4096")]
@@ -21,6 +21,18 @@ pub enum ObjectError {
         rows: usize,
         /// Points on each.
         columns: usize,
+    },
+    /// The object is so large or rough that no grid is near enough to it.
+    #[error(
+        "the finest collision mesh is {:.3} mm off the surface (limit {:.3} mm): the object is too large or too rough for a hand; is its unit right?",
+        1e3 * error,
+        1e3 * limit
+    )]
+    Coarse {
+        /// How far the facets are from the surface, metres.
+        error: f64,
+        /// How far they may be, metres.
+        limit: f64,
     },
 }
 
@@ -86,11 +98,15 @@ impl Gap {
 impl<'a> CollisionObject<'a> {
     /// Facets are to stay this near to the surface, metres, where the finest grid allows.
     pub const FACET_TOLERANCE: f64 = 5e-5;
+    /// Facets farther off than this, metres, are refused by [`Self::new`]: a quarter of the gap at
+    /// which a tip counts as arrived.
+    pub const FACET_LIMIT: f64 = 2.5e-4;
     /// The coarsest grid that [`Self::new`] tries; up to two times it is halved.
     const COARSE_GRID: (usize, usize) = (121, 240);
 
     /// Prepares a surface on the coarsest of three grids whose facets stay within
-    /// [`Self::FACET_TOLERANCE`] of it ([`Self::mesh_error`] says how near they are).
+    /// [`Self::FACET_TOLERANCE`] of it ([`Self::mesh_error`] says how near they are); beyond
+    /// [`Self::FACET_LIMIT`] on the finest it is an error.
     pub fn new(surface: &'a RadialShape) -> Result<Self, ObjectError> {
         let (mut rows, mut columns) = Self::COARSE_GRID;
         let mut mesh = surface.mesh(rows, columns);
@@ -101,7 +117,15 @@ impl<'a> CollisionObject<'a> {
             (rows, columns) = (2 * rows - 1, 2 * columns);
             mesh = surface.mesh(rows, columns);
         }
-        Ok(Self::of_mesh(surface, &mesh, columns))
+        let object = Self::of_mesh(surface, &mesh, columns);
+        if object.mesh_error <= Self::FACET_LIMIT {
+            Ok(object)
+        } else {
+            Err(ObjectError::Coarse {
+                error: object.mesh_error,
+                limit: Self::FACET_LIMIT,
+            })
+        }
     }
 
     /// Prepares a surface on a grid of `rows` circles of latitude with `columns` points each.

@@ -11,6 +11,8 @@ use crate::model::{Geometry, LinkGeometry};
 
 /// Extents of a hull below this (metres) count as flat.
 const LEAST_HULL_THICKNESS: f64 = 1e-6;
+/// Hulls of more points are simplified to the extreme ones in this many directions.
+const HULL_DIRECTIONS: usize = 96;
 
 /// Why geometry cannot take part in collision tests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
@@ -40,13 +42,13 @@ pub(crate) struct PointDistance {
     pub(crate) slope: Vector3<f64>,
 }
 
-/// A convex hull about its bounding box's middle.
+/// A convex hull about a point inside it.
 #[derive(Debug, Clone)]
 struct Hull {
     body: ConvexPolyhedron,
-    /// Outward unit normals of the faces and their heights over the middle.
+    /// Outward unit normals of the faces and their heights over that point.
     faces: Vec<(Vector3<f64>, f64)>,
-    /// Radius of a sphere about the middle inside the hull; 0 if there is none.
+    /// Radius of a sphere about that point inside the hull.
     inner_radius: f64,
 }
 
@@ -141,8 +143,7 @@ impl ConvexPiece {
             }
             &Geometry::Sphere { radius } => (Form::Ball(Ball::new(radius)), radius),
             Geometry::Hull { points } => {
-                let centre = middle(points);
-                let hull = hull(points, &centre)?;
+                let (hull, centre) = hull(points)?;
                 link_from_piece *= nalgebra::Translation3::from(centre.coords);
                 let radius = hull.points().iter().map(|p| p.length()).fold(0.0, f64::max);
                 (Form::Hull(Box::new(Hull::new(hull))), radius)
@@ -354,15 +355,57 @@ impl LinkShape {
 
 /// Checks that the vertices of a mesh span a convex hull with volume.
 pub(crate) fn check_hull(points: &[Point3<f64>]) -> Result<(), GeometryError> {
-    hull(points, &middle(points)).map(|_| ())
+    hull(points).map(|_| ())
 }
 
-fn hull(points: &[Point3<f64>], centre: &Point3<f64>) -> Result<ConvexPolyhedron, GeometryError> {
-    if thickness(points, centre) < LEAST_HULL_THICKNESS {
+/// A convex hull of the points about a point inside it.
+///
+/// Of many points only those extreme in [`HULL_DIRECTIONS`] even directions are kept, and
+/// their hull is enlarged until it holds all points (by some percent of its size).
+fn hull(points: &[Point3<f64>]) -> Result<(ConvexPolyhedron, Point3<f64>), GeometryError> {
+    let extreme = extreme_points(points);
+    let count = extreme.len().max(1) as f64;
+    let centre = Point3::from(extreme.iter().map(|p| p.coords).sum::<Vector3<f64>>() / count);
+    if thickness(&extreme, &centre) < LEAST_HULL_THICKNESS {
         return Err(GeometryError::FlatHull);
     }
-    let centred: Vec<Vector> = points.iter().map(|p| to_parry(&(p - centre))).collect();
-    ConvexPolyhedron::from_convex_hull(&centred).ok_or(GeometryError::FlatHull)
+    let build = |scale: f64| {
+        let centred: Vec<_> = extreme
+            .iter()
+            .map(|p| to_parry(&((p - centre) * scale)))
+            .collect();
+        ConvexPolyhedron::from_convex_hull(&centred).ok_or(GeometryError::FlatHull)
+    };
+    let tight = build(1.0)?;
+    let outside = |normal: Vector3<f64>| {
+        let reach = points
+            .iter()
+            .map(|p| normal.dot(&(p - centre)))
+            .fold(0.0, f64::max);
+        reach / support_of(&tight, &normal)
+    };
+    let normals = tight.faces().iter().map(|face| from_parry(face.normal));
+    let scale = normals.map(outside).fold(1.0, f64::max);
+    if !scale.is_finite() {
+        return Err(GeometryError::FlatHull);
+    }
+    Ok((build(scale)?, centre))
+}
+
+fn extreme_points(points: &[Point3<f64>]) -> Vec<Point3<f64>> {
+    if points.len() <= HULL_DIRECTIONS {
+        return points.to_vec();
+    }
+    let mut kept: Vec<usize> = sph::direction::even_directions(HULL_DIRECTIONS)
+        .iter()
+        .filter_map(|d| {
+            let height = |k: &usize| d.dot(&points[*k].coords);
+            (0..points.len()).max_by(|a, b| height(a).total_cmp(&height(b)))
+        })
+        .collect();
+    kept.sort_unstable();
+    kept.dedup();
+    kept.into_iter().map(|k| points[k]).collect()
 }
 
 /// Root mean square extent along the thinnest principal axis.
@@ -376,17 +419,6 @@ fn thickness(points: &[Point3<f64>], centre: &Point3<f64>) -> f64 {
     }
     let least = covariance.symmetric_eigenvalues().min();
     if least > 0.0 { least.sqrt() } else { 0.0 }
-}
-
-/// Middle of the bounding box.
-fn middle(points: &[Point3<f64>]) -> Point3<f64> {
-    let Some(first) = points.first() else {
-        return Point3::origin();
-    };
-    let (low, high) = points
-        .iter()
-        .fold((*first, *first), |(low, high), p| (low.inf(p), high.sup(p)));
-    nalgebra::center(&low, &high)
 }
 
 fn clamp_to_box(p: &Vector3<f64>, half: &Vector3<f64>) -> Vector3<f64> {

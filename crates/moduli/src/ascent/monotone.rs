@@ -3,23 +3,22 @@
 //! Q is the least of many smooth facet offsets, so at a maximum several tie and a step along the
 //! gradient of one lowers another. Each step therefore maximises the least of the near-active
 //! facets' linear models, less |u|²/2ρ (a proximal bundle step), over all contacts' tangent
-//! moves u; a move is taken only if Q rises, and ρ follows how well the model did.
+//! moves u within the limits; a move is taken only if Q rises, and ρ follows how well the model did.
 
-use grasp::{ActiveFacet, Contact, FrameRule, Gradient, Margin, QualityError};
-use nalgebra::Vector3;
-use shape::{Differential, Surface};
+use grasp::QualityError;
+use shape::Surface;
 use sph::Direction;
-use sph::direction::{retract, tangent_frame};
 
-use super::bundle::{BundleModel, LinearPiece};
+use super::climber::Climber;
 use super::{Ascent, Step};
-use crate::objective::Objective;
-use crate::point::contacts_on;
+use crate::constraints::{ConstraintError, Constraints};
+use crate::quality::Quality;
+use crate::scatter::nearby;
 
 /// Settings of the monotone ascent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MonotoneAscent {
-    /// Most steps tried, taken or not.
+    /// Most steps tried, taken or not, from one start.
     pub steps: usize,
     /// Longest move of all contacts together in one step, radians.
     pub reach: f64,
@@ -27,6 +26,8 @@ pub struct MonotoneAscent {
     pub stationarity: f64,
     /// Stop when the model promises less than this.
     pub least_gain: f64,
+    /// New starts when a climb ends open: around where it began, ever farther.
+    pub restarts: usize,
 }
 
 impl Default for MonotoneAscent {
@@ -37,178 +38,187 @@ impl Default for MonotoneAscent {
             reach: 0.3,
             stationarity: 1e-4,
             least_gain: 1e-7,
+            restarts: 8,
         }
     }
 }
 
-/// Share of the promised gain that a step must bring.
-const ACCEPT: f64 = 0.1;
-/// Facets that one step looks at, the weakest first.
-const FACETS: usize = 48;
-/// First move, radians.
-const FIRST_MOVE: f64 = 0.1;
-
-/// Where the ascent stands.
-struct State {
-    directions: Vec<Direction>,
-    contacts: Vec<Contact>,
-    margin: Margin,
+/// Why a climb within constraints has no result.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AscentError {
+    /// A quality could not be computed.
+    #[error(transparent)]
+    Quality(#[from] QualityError),
+    /// The constraints are no numbers, or the start cannot be brought inside them.
+    #[error(transparent)]
+    Constraints(#[from] ConstraintError),
 }
+
+/// How far the first restart may move a contact, radians; the last one moves up to π/2.
+const FIRST_SPREAD: f64 = 0.4;
+/// Starts that one restart looks at; the best climbs.
+const PROBES: usize = 4;
 
 impl MonotoneAscent {
     /// Climbs from `start`; `trace` sees every state taken. The quality of the result is never
     /// below that of the start.
     ///
-    /// Works from grasps that are not force-closed too: there the signed margin rises first. The
-    /// qualities reported are 0 for open grasps.
-    pub fn climb(
+    /// Works from grasps that are not force-closed too: there the signed margin rises first, and
+    /// where that ends open, nearby starts are tried. The qualities reported are 0 for open grasps.
+    pub fn climb<S: Surface>(
         &self,
-        surface: &impl Surface,
+        surface: &S,
         start: &[Direction],
-        objective: &mut Objective,
+        quality: &mut impl Quality<S>,
+        trace: impl FnMut(&Step),
+    ) -> Result<Ascent, QualityError> {
+        self.climb_inside(surface, start, quality, &mut Constraints::default(), trace)
+    }
+
+    /// The same within hard limits: no state of the trace, the first included, violates one.
+    ///
+    /// A start outside the limits of place is first moved inside ([`Constraints::repair`]); one that
+    /// is not closed under [`Constraints::closed_under`] first climbs there. Where neither is
+    /// possible there is an error. Q is not below that of the start so repaired.
+    pub fn climb_within<S: Surface>(
+        &self,
+        surface: &S,
+        start: &[Direction],
+        quality: &mut impl Quality<S>,
+        constraints: &Constraints,
+        trace: impl FnMut(&Step),
+    ) -> Result<Ascent, AscentError> {
+        constraints.validate()?;
+        let mut constraints = constraints.clone();
+        let mut inside = constraints.repair(surface, start)?;
+        if !constraints.closed(surface, &inside)? {
+            inside = self.close(surface, inside, &mut constraints)?;
+        }
+        Ok(self.climb_inside(surface, &inside, quality, &mut constraints, trace)?)
+    }
+
+    /// Climbs the second objective alone until it is closed.
+    fn close<S: Surface>(
+        &self,
+        surface: &S,
+        start: Vec<Direction>,
+        constraints: &mut Constraints,
+    ) -> Result<Vec<Direction>, AscentError> {
+        let Some(mut second) = constraints.closed_under.take() else {
+            return Ok(start);
+        };
+        let least = f64::MIN_POSITIVE;
+        let reached = self.climb_or_restart(surface, &start, &mut second, constraints, least, |_| {});
+        constraints.closed_under = Some(second);
+        let reached = reached?;
+        if reached.margin > 0.0 {
+            return Ok(reached.contacts);
+        }
+        Err(AscentError::Constraints(ConstraintError::FrictionMargin {
+            by: -reached.margin,
+        }))
+    }
+
+    fn climb_inside<S: Surface>(
+        &self,
+        surface: &S,
+        start: &[Direction],
+        quality: &mut impl Quality<S>,
+        constraints: &mut Constraints,
+        trace: impl FnMut(&Step),
+    ) -> Result<Ascent, QualityError> {
+        self.climb_or_restart(surface, start, quality, constraints, f64::INFINITY, trace)
+    }
+
+    fn climb_or_restart<S: Surface>(
+        &self,
+        surface: &S,
+        start: &[Direction],
+        quality: &mut impl Quality<S>,
+        constraints: &mut Constraints,
+        enough: f64,
         mut trace: impl FnMut(&Step),
     ) -> Result<Ascent, QualityError> {
-        let before = objective.evaluations();
-        let mut here = State::new(surface, start.to_vec(), objective)?;
-        let start_quality = here.quality();
-        let mut pieces = Vec::new();
-        let mut fresh = true;
-        let mut damping: Option<f64> = None;
-        for _ in 0..self.steps {
-            if fresh {
-                self.linearise(surface, &here, objective, &mut pieces)?;
-            }
-            let steepest = pieces.first().map_or(0.0, LinearPiece::slope);
-            if !(steepest > self.stationarity) {
+        let before = quality.evaluations();
+        let from = start.to_vec();
+        let mut best = self.climb_once(surface, from, quality, constraints, enough, &mut trace)?;
+        for k in 0..self.restarts {
+            if best.margin > 0.0 {
                 break;
             }
-            let rho = damping.unwrap_or(FIRST_MOVE / steepest);
-            let step = BundleModel::new(&pieces, rho).best_move(self.reach);
-            if fresh {
-                trace(&Step {
-                    contacts: &here.directions,
-                    quality: here.quality(),
-                    stationarity: step.slope,
-                });
-            }
-            if !(step.gain > self.least_gain && step.slope > self.stationarity) {
-                // Nothing to gain with this much freedom; with more there may be.
-                if rho >= 1.0 || step.slope <= self.stationarity {
-                    break;
-                }
-                damping = Some(8.0 * rho);
-                fresh = false;
+            let Some(from) = self.probe(surface, start, k, quality, constraints)? else {
                 continue;
-            }
-            let moved = here.moved(&step.moves);
-            let there = State::new(surface, moved, objective)?;
-            let gain = there.margin.value - here.margin.value;
-            let kept_promise = gain / step.gain;
-            fresh = kept_promise >= ACCEPT && gain > 0.0;
-            damping = Some(match kept_promise {
-                k if k > 0.75 => 2.0 * rho,
-                k if k > 0.3 => rho,
-                k if k > 0.0 => 0.5 * rho,
-                _ => 0.25 * rho,
-            });
-            if fresh {
-                here = there;
+            };
+            let next = self.climb_once(surface, from, quality, constraints, enough, &mut trace)?;
+            if next.margin > best.margin {
+                best = Ascent {
+                    start_quality: best.start_quality,
+                    ..next
+                };
             }
         }
         trace(&Step {
-            contacts: &here.directions,
-            quality: here.quality(),
-            stationarity: 0.0,
+            contacts: &best.contacts,
+            quality: best.quality,
+            stationarity: best.stationarity,
         });
-        Ok(Ascent {
-            quality: here.quality(),
-            contacts: here.directions,
-            start_quality,
-            evaluations: objective.evaluations() - before,
-        })
+        best.evaluations = quality.evaluations() - before;
+        Ok(best)
     }
 
-    /// The near-active facets as linear functions of the contacts' tangent moves.
-    fn linearise(
+    /// The best of a few starts scattered around the first one, within the limits.
+    fn probe<S: Surface>(
         &self,
-        surface: &impl Surface,
-        here: &State,
-        objective: &mut Objective,
-        pieces: &mut Vec<LinearPiece>,
-    ) -> Result<(), QualityError> {
-        pieces.clear();
-        let slopes: Vec<Differential> = here
-            .directions
-            .iter()
-            .map(|p| surface.differential(p))
-            .collect();
-        let mut facets = Vec::new();
-        if here.margin.closed {
-            let band = 0.25 * here.margin.value + 1e-3;
-            objective.near_active_facets(&here.contacts, band, &mut facets)?;
-            facets.sort_by(|a, b| a.offset.total_cmp(&b.offset));
-            facets.truncate(FACETS);
-        } else {
-            facets.push(here.margin.facet);
+        surface: &S,
+        start: &[Direction],
+        restart: usize,
+        quality: &mut impl Quality<S>,
+        constraints: &mut Constraints,
+    ) -> Result<Option<Vec<Direction>>, QualityError> {
+        let share = restart as f64 / self.restarts.saturating_sub(1).max(1) as f64;
+        let spread = FIRST_SPREAD + share * (std::f64::consts::FRAC_PI_2 - FIRST_SPREAD);
+        let mut best: Option<(f64, Vec<Direction>)> = None;
+        for probe in 0..PROBES {
+            let scattered = nearby(start, restart * PROBES + probe, spread);
+            let Ok(inside) = constraints.repair(surface, &scattered) else {
+                continue;
+            };
+            if !constraints.closed(surface, &inside)? {
+                continue;
+            }
+            let value = quality.value(surface, &inside)?;
+            if best.as_ref().is_none_or(|(most, _)| value > *most) {
+                best = Some((value, inside));
+            }
         }
-        let mut gradient = Gradient::default();
-        for facet in &facets {
-            objective.facet_gradient(&here.contacts, facet, FrameRule::Tangent, &mut gradient)?;
-            pieces.push(piece(here, facet, &gradient, &slopes));
-        }
-        Ok(())
+        Ok(best.map(|(_, start)| start))
     }
-}
 
-/// Chain rule: dQ = Σᵢ (df(pᵢ)ᵀ ∂Q/∂cᵢ + dn(pᵢ)ᵀ ∂Q/∂nᵢ) · uᵢ.
-fn piece(
-    here: &State,
-    facet: &ActiveFacet,
-    gradient: &Gradient,
-    slopes: &[Differential],
-) -> LinearPiece {
-    let mut slope = Vec::with_capacity(2 * slopes.len());
-    for (i, at) in slopes.iter().enumerate() {
-        let by_move = at.position_slope.transpose() * gradient.positions[i]
-            + at.normal_slope.transpose() * gradient.normals[i];
-        let (e1, e2) = tangent_frame(&here.directions[i]);
-        slope.extend([e1.dot(&by_move), e2.dot(&by_move)]);
-    }
-    LinearPiece {
-        excess: facet.offset - here.margin.value,
-        gradient: slope,
-    }
-}
-
-impl State {
-    fn new(
-        surface: &impl Surface,
-        directions: Vec<Direction>,
-        objective: &mut Objective,
-    ) -> Result<Self, QualityError> {
-        let contacts = contacts_on(surface, &directions);
-        let margin = objective.margin(&contacts)?;
-        Ok(Self {
-            directions,
-            contacts,
-            margin,
+    fn climb_once<S: Surface>(
+        &self,
+        surface: &S,
+        start: Vec<Direction>,
+        quality: &mut impl Quality<S>,
+        constraints: &mut Constraints,
+        enough: f64,
+        trace: &mut impl FnMut(&Step),
+    ) -> Result<Ascent, QualityError> {
+        let mut climber = Climber::new(surface, quality, constraints, start)?;
+        let start_quality = climber.value.max(0.0);
+        climber.climb(self, enough, |contacts, value, slope| {
+            trace(&Step {
+                contacts,
+                quality: value.max(0.0),
+                stationarity: slope,
+            });
+        })?;
+        Ok(Ascent {
+            start_quality,
+            quality: climber.value.max(0.0),
+            margin: climber.value,
+            stationarity: climber.stationarity(),
+            contacts: climber.here,
+            evaluations: 0,
         })
-    }
-
-    fn quality(&self) -> f64 {
-        self.margin.value.max(0.0)
-    }
-
-    /// The directions after tangent moves, two numbers a contact in the frame of its direction.
-    fn moved(&self, moves: &[f64]) -> Vec<Direction> {
-        self.directions
-            .iter()
-            .zip(moves.chunks_exact(2))
-            .map(|(p, u)| {
-                let (e1, e2) = tangent_frame(p);
-                let v: Vector3<f64> = e1 * u[0] + e2 * u[1];
-                retract(p, &v)
-            })
-            .collect()
     }
 }

@@ -68,15 +68,18 @@ impl PaperAscent {
             contacts = contacts_on(surface, &directions);
             quality = objective.quality(&contacts)?;
         }
+        let stationarity = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
         trace(&Step {
             contacts: &directions,
             quality,
-            stationarity: gradient.iter().map(|g| g * g).sum::<f64>().sqrt(),
+            stationarity,
         });
         Ok(Ascent {
             contacts: directions,
             start_quality,
             quality,
+            margin: quality,
+            stationarity,
             evaluations: objective.evaluations() - before,
         })
     }

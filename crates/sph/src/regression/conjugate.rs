@@ -63,13 +63,13 @@ pub(super) fn solve(
     let mut energy = dot(&r, &z);
     let mut recent = [f64::INFINITY; WINDOW];
     for iteration in 0..limits.iterations {
-        if !(energy > 0.0) {
+        if energy.is_nan() || energy <= 0.0 {
             // Nothing is left, or the matrix is not positive definite in floating point.
             return outcome(x, quadratic, iteration, energy == 0.0);
         }
         let image = apply(&direction);
         let curvature = dot(&direction, &image);
-        if !(curvature > 0.0) {
+        if curvature.is_nan() || curvature <= 0.0 {
             return outcome(x, quadratic, iteration, false);
         }
         let alpha = energy / curvature;

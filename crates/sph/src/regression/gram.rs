@@ -26,6 +26,12 @@ const SMALL_DEGREE: usize = 16;
 /// Up to here a dense factor is affordable where the iteration fails.
 const DENSE_DEGREE: usize = 80;
 
+/// A right-hand side, where to start from, and how far to go.
+pub(super) type Task<'a> = (&'a [f64], Option<&'a [f64]>, Limits);
+
+/// M⁻¹ b to a share of its squared size.
+type Solver<'a> = dyn Fn(&[f64], f64) -> Result<Vec<f64>, RegressionError> + 'a;
+
 /// The normal equations of a set of samples at one degree.
 pub struct Gram {
     degree: usize,
@@ -249,10 +255,10 @@ impl Gram {
     pub(super) fn solve_roughly(
         &self,
         penalty: Penalty,
-        rights: &[(&[f64], Option<&[f64]>, Limits)],
+        tasks: &[Task],
     ) -> Result<Vec<Outcome>, RegressionError> {
         if !self.prefers_dense() {
-            let found: Result<Vec<Outcome>, RegressionError> = rights
+            let found: Result<Vec<Outcome>, RegressionError> = tasks
                 .par_iter()
                 .map(|&(right, start, limits)| self.iterate(penalty, right, start, limits))
                 .collect();
@@ -261,7 +267,7 @@ impl Gram {
             }
         }
         let factor = self.factor(penalty)?;
-        Ok(rights
+        Ok(tasks
             .iter()
             .map(|(right, ..)| {
                 let solution = factor.solve(right);
@@ -284,21 +290,17 @@ impl Gram {
         limits: Limits,
     ) -> Result<Outcome, RegressionError> {
         let mean_density = self.density.as_slice()[0] / (4.0 * std::f64::consts::PI).sqrt();
-        let shares: Vec<f64> = (0..=self.degree)
-            .map(|l| 1.0 / (1.0 + penalty.weight(l) / mean_density))
-            .collect();
-        let scaled = |x: &[f64]| -> Vec<f64> {
-            x.iter()
-                .enumerate()
-                .map(|(i, x)| x * shares[index::degree_order(i).0])
-                .collect()
+        let share = |i: usize| {
+            let (l, _) = index::degree_order(i);
+            1.0 / (1.0 + penalty.weight(l) / mean_density)
         };
+        let shares: Vec<f64> = (0..right.len()).map(share).collect();
+        let scaled =
+            |x: &[f64]| -> Vec<f64> { x.iter().zip(&shares).map(|(x, p)| x * p).collect() };
         // (ρ + λd)⁻¹ ≈ p ρ̃⁻¹ p + (1−p) p / ρ̄ with p = 1/(1 + λd/ρ̄): exact where ρ is constant.
         let precondition = |r: &[f64]| {
-            let inner = self.inverse.apply(&scaled(r));
-            let mut out = scaled(&inner);
-            for (i, (out, r)) in out.iter_mut().zip(r).enumerate() {
-                let p = shares[index::degree_order(i).0];
+            let mut out = scaled(&self.inverse.apply(&scaled(r)));
+            for ((out, r), p) in out.iter_mut().zip(r).zip(&shares) {
                 *out += (1.0 - p) * p / mean_density * r;
             }
             out
@@ -329,7 +331,7 @@ impl Gram {
         &self,
         samples: Samples,
         penalty: Penalty,
-        solve: &dyn Fn(&[f64], f64) -> Result<Vec<f64>, RegressionError>,
+        solve: &Solver,
     ) -> Result<Coefficients, RegressionError> {
         let mut beta = solve(&self.right, 1e-18)?;
         let fitted = self.points.evaluate(samples.directions, &beta);

@@ -44,7 +44,7 @@ pub(super) fn fit_weighted(
     let qr = matrix.qr();
     let diagonal = (0..unknowns).map(|i| qr.R()[(i, i)].abs());
     let (least, most) = diagonal.fold((f64::INFINITY, 0.0_f64), |(a, b), d| (a.min(d), b.max(d)));
-    if !(least > most * 1e-13) {
+    if least.is_nan() || least <= most * 1e-13 {
         return Err(rank_deficient);
     }
     let solution = qr.solve_lstsq(&right);

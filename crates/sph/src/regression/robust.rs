@@ -8,7 +8,7 @@ use crate::scattered::Scattered;
 /// How samples lose weight: full weight up to `full` deviations from their neighbours, none from
 /// `none` deviations on, falling linearly in between (a redescending loss).
 ///
-/// The fit is repeated only when what changes weight carries a fiftieth of the squared residuals.
+/// The fit is repeated only when what changes weight carries a hundredth of the squared residuals.
 /// A deviation is 1.4826 times the median absolute difference of the residuals in the sample's
 /// cell from the cell's median, at least that of all samples. Since it is judged within a cell, an
 /// edge or a part that degree L cannot follow, where whole neighbourhoods lie off the fit, keeps its
@@ -38,7 +38,7 @@ impl Default for Robust {
 /// Least members of a cell.
 const CELL: usize = 32;
 /// Share of the sum of squared residuals whose weight may change without another fit.
-const SETTLED: f64 = 0.02;
+const SETTLED: f64 = 0.01;
 
 /// Reweighted least squares; each round chooses the penalty anew when it is automatic.
 pub(super) fn fit(
@@ -71,7 +71,7 @@ pub(super) fn fit(
             (0..).zip(&residuals).map(|(i, r)| weight(i) * r * r).sum()
         };
         let changed = squares(&|i| given(i) * (next[i] - factors[i]).abs());
-        if changed <= SETTLED * squares(&|i| given(i) * factors[i]) {
+        if changed <= SETTLED * squares(&|i| given(i) * next[i]) {
             break;
         }
         factors = next;

@@ -1,0 +1,142 @@
+//! `moduli transfer`: grasps on one object, carried to another.
+
+use std::time::Instant;
+
+use moduli::transfer::Transfer;
+use moduli::{Continuation, Objective, PaperAscent, PaperTransfer, Step, TransferError, Transferred};
+use rayon::prelude::*;
+use record::grasps::SourceRecord;
+use shape::{RadialField, Surface, space};
+
+use crate::args::{Common, TransferOptions, TransferScheme};
+use crate::commands::ascend::PAPER_ASCENT;
+use crate::failure::Failure;
+use crate::placed::{Delivery, Moved, Object, Placed, TraceStep, deliver};
+use crate::{input, output};
+
+/// The paper's transfer (Sec. IV-E).
+const PAPER: PaperTransfer = PaperTransfer {
+    intervals: 10,
+    ascent: PaperAscent {
+        steps: 100,
+        ..PAPER_ASCENT
+    },
+};
+
+/// How grasps are carried, with the shapes on the way.
+enum Scheme {
+    Ours(Continuation, Vec<RadialField>),
+    Paper(Vec<RadialField>),
+    Naive,
+}
+
+pub(crate) fn run(options: &TransferOptions, common: &Common) -> Result<(), Failure> {
+    let convention = input::convention(&options.convention)?;
+    let (from, to) = (Object::read(&options.from)?, Object::read(&options.to)?);
+    let grasps = from.grasps(&options.grasps)?;
+    let transfer = Transfer {
+        from: &from.surface,
+        to: &to.surface,
+        convention: &convention,
+        object_origin: to.origin(),
+    };
+    let start = Instant::now();
+    let scheme = prepare(options, &transfer)
+        .map_err(|e| Failure::refused(format!("{} to {}: {e}", from.record.name, to.record.name)))?;
+    let source = source(&from, &to);
+    let bar = output::progress(common.quiet, grasps.len(), "transferring");
+    let moved = grasps
+        .par_iter()
+        .enumerate()
+        .map(|(i, placed)| {
+            let moved = carry(options, &scheme, &transfer, &to, placed, &source)
+                .map_err(|e| Failure::input(&options.grasps, format!("grasp {i}: {e}")))?;
+            bar.inc(1);
+            Ok(moved)
+        })
+        .collect::<Result<Vec<_>, Failure>>()?;
+    bar.finish_and_clear();
+    let how = Delivery {
+        scheme: match options.scheme {
+            TransferScheme::Ours => "ours",
+            TransferScheme::Paper => "paper",
+            TransferScheme::Naive => "naive",
+        },
+        output: options.output.as_deref(),
+        trace: options.trace.as_deref(),
+        json: common.json,
+        seconds: start.elapsed().as_secs_f64(),
+    };
+    let objective = Objective::new(&convention, &to.surface, &to.origin());
+    deliver(&to, &objective, &moved, &how)
+}
+
+fn prepare(options: &TransferOptions, transfer: &Transfer) -> Result<Scheme, TransferError> {
+    Ok(match options.scheme {
+        TransferScheme::Ours => {
+            let scheme = if options.thorough {
+                Continuation::thorough()
+            } else {
+                Continuation::default()
+            };
+            Scheme::Ours(scheme, scheme.stations(transfer)?)
+        }
+        TransferScheme::Paper => Scheme::Paper(PAPER.stations(transfer)?),
+        TransferScheme::Naive => Scheme::Naive,
+    })
+}
+
+fn source(from: &Object, to: &Object) -> SourceRecord {
+    let distance = space::distance(from.surface.shape(), to.surface.shape());
+    SourceRecord {
+        kind: "transfer".to_owned(),
+        from: Some(from.record.name.clone()),
+        shape_distance_m: Some(distance),
+        source_quality: None,
+    }
+}
+
+fn carry(
+    options: &TransferOptions,
+    scheme: &Scheme,
+    transfer: &Transfer,
+    to: &Object,
+    placed: &Placed,
+    source: &SourceRecord,
+) -> Result<Moved, TransferError> {
+    let mut steps = Vec::new();
+    let keep = |t: f64, step: &Step| {
+        if options.trace.is_some() {
+            steps.push(TraceStep::new(t, step, points(transfer, to, t, step)));
+        }
+    };
+    let start = &placed.directions;
+    let end: Transferred = match scheme {
+        Scheme::Ours(scheme, stations) => scheme.carry(transfer, stations, start, keep)?,
+        Scheme::Paper(stations) => PAPER.carry(transfer, stations, start, keep)?,
+        Scheme::Naive => transfer.naive(start)?,
+    };
+    Ok(Moved {
+        reason: end.open.map(|open| open.to_string()),
+        directions: end.contacts,
+        start_quality: end.start_quality,
+        quality: end.quality,
+        evaluations: end.evaluations,
+        stationarity: end.stationarity,
+        source: SourceRecord {
+            source_quality: Some(end.start_quality),
+            ..source.clone()
+        },
+        steps,
+    })
+}
+
+/// Contacts on γ(t), where r = (1−t) r₁ + t r₂, in the frame of the target's cloud.
+fn points(transfer: &Transfer, to: &Object, t: f64, step: &Step) -> Vec<[f64; 3]> {
+    let centre = to.record.centre_in_cloud().coords;
+    let on = |surface: &RadialField, p| surface.point(p).coords;
+    step.contacts
+        .iter()
+        .map(|p| (on(transfer.from, p) * (1.0 - t) + on(transfer.to, p) * t + centre).into())
+        .collect()
+}

@@ -1,0 +1,207 @@
+//! One climb: a state, the models around it, and the steps between states.
+
+use grasp::QualityError;
+use shape::Surface;
+use sph::Direction;
+use sph::direction::tangent_frame;
+
+use super::bundle::{Bundle, Promise};
+use super::monotone::MonotoneAscent;
+use crate::constraints::Constraints;
+use crate::quality::{LinearPieces, Quality, dot, moved};
+
+/// Share of the promised gain that a step must bring.
+const ACCEPT: f64 = 0.1;
+/// First move, radians.
+const FIRST_MOVE: f64 = 0.1;
+/// Pieces of rejected steps are added up to this many.
+const MOST_PIECES: usize = 64;
+/// ρ of the stationarity that is reported.
+const REPORT_RHO: f64 = 0.01;
+
+/// Where a climb stands, with everything that steps reuse.
+pub(super) struct Climber<'a, S, Q> {
+    surface: &'a S,
+    quality: &'a mut Q,
+    constraints: &'a mut Constraints,
+    pub(super) here: Vec<Direction>,
+    pub(super) value: f64,
+    there: Vec<Direction>,
+    pieces: LinearPieces,
+    limits: LinearPieces,
+    bundle: Bundle,
+    slope: Vec<f64>,
+}
+
+impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
+    pub(super) fn new(
+        surface: &'a S,
+        quality: &'a mut Q,
+        constraints: &'a mut Constraints,
+        start: Vec<Direction>,
+    ) -> Result<Self, QualityError> {
+        let value = quality.value(surface, &start)?;
+        let mut climber = Self {
+            surface,
+            quality,
+            constraints,
+            there: start.clone(),
+            here: start,
+            value,
+            pieces: LinearPieces::default(),
+            limits: LinearPieces::default(),
+            bundle: Bundle::default(),
+            slope: Vec::new(),
+        };
+        climber.linearise()?;
+        Ok(climber)
+    }
+
+    /// Climbs until no slope, no gain or no steps are left, or until `enough`; `seen` gets every
+    /// state left behind and its slope.
+    pub(super) fn climb(
+        &mut self,
+        settings: &MonotoneAscent,
+        enough: f64,
+        mut seen: impl FnMut(&[Direction], f64, f64),
+    ) -> Result<(), QualityError> {
+        let mut rho = FIRST_MOVE / self.steepest().max(f64::MIN_POSITIVE);
+        let mut fresh = true;
+        for _ in 0..settings.steps {
+            if !(self.steepest() > settings.stationarity && self.value < enough) {
+                break;
+            }
+            let step = self
+                .bundle
+                .solve(&self.pieces, &self.limits, rho, settings.reach);
+            if fresh {
+                seen(&self.here, self.value, step.slope);
+            }
+            if !(step.gain > settings.least_gain && step.slope > settings.stationarity) {
+                // Nothing to gain with this much freedom; with more there may be.
+                if rho >= 1.0 || step.slope <= settings.stationarity {
+                    break;
+                }
+                rho *= 8.0;
+                fresh = false;
+                continue;
+            }
+            let kept_promise = self.try_step(&step)?;
+            fresh = kept_promise >= ACCEPT;
+            rho *= match kept_promise {
+                k if k > 0.75 => 2.0,
+                k if k > 0.3 => 1.0,
+                k if k > 0.0 => 0.5,
+                _ => 0.25,
+            };
+        }
+        Ok(())
+    }
+
+    /// The slope that is left here, at one ρ for all grasps. The models of rejected steps count
+    /// too: they bound Q from above as the facets do.
+    pub(super) fn stationarity(&mut self) -> f64 {
+        self.bundle
+            .solve(&self.pieces, &self.limits, REPORT_RHO, f64::INFINITY)
+            .slope
+    }
+
+    /// Moves if the gain is a fair share of the promise; returns that share.
+    fn try_step(&mut self, step: &Promise) -> Result<f64, QualityError> {
+        let moves = self.bundle.moves();
+        self.there.clear();
+        let moved_here = self.here.iter().zip(moves.chunks_exact(2));
+        self.there.extend(moved_here.map(|(p, u)| moved(p, u)));
+        if !self.admitted()? {
+            return Ok(-1.0);
+        }
+        let value = self.quality.value(self.surface, &self.there)?;
+        let gain = value - self.value;
+        let kept_promise = gain / step.gain;
+        if kept_promise >= ACCEPT && gain > 0.0 {
+            std::mem::swap(&mut self.here, &mut self.there);
+            self.value = value;
+            self.linearise()?;
+            return Ok(kept_promise);
+        }
+        if value.is_finite() && self.pieces.len() < MOST_PIECES {
+            self.remember(value)?;
+        }
+        Ok(if kept_promise.is_nan() { -1.0 } else { kept_promise.min(0.99 * ACCEPT) })
+    }
+
+    /// Whether the trial state keeps every limit, after a repair of what curvature took away.
+    fn admitted(&mut self) -> Result<bool, QualityError> {
+        if self.constraints.is_empty() {
+            return Ok(true);
+        }
+        match self.constraints.repair(self.surface, &self.there) {
+            Ok(inside) => self.there = inside,
+            Err(_) => return Ok(false),
+        }
+        self.constraints.closed(self.surface, &self.there)
+    }
+
+    fn linearise(&mut self) -> Result<(), QualityError> {
+        self.quality
+            .linearise(self.surface, &self.here, &mut self.pieces)?;
+        self.constraints
+            .linearise(self.surface, &self.here, &mut self.limits)
+    }
+
+    /// Adds the model at a rejected state, seen from here: what decided there may not have been
+    /// among the pieces.
+    fn remember(&mut self, value: f64) -> Result<(), QualityError> {
+        self.slope.clear();
+        self.slope.resize(2 * self.here.len(), 0.0);
+        self.quality
+            .slope(self.surface, &self.there, &mut self.slope)?;
+        for i in 0..self.here.len() {
+            let carried = carry_back(&self.here[i], &self.there[i], &self.slope[2 * i..]);
+            self.slope[2 * i..2 * i + 2].copy_from_slice(&carried);
+        }
+        let excess = value - self.value - dot(&self.slope, self.bundle.moves());
+        self.pieces
+            .push(excess.max(0.0))
+            .copy_from_slice(&self.slope);
+        Ok(())
+    }
+
+    fn steepest(&self) -> f64 {
+        if self.pieces.is_empty() {
+            return 0.0;
+        }
+        crate::quality::norm(self.pieces.get(0).1)
+    }
+}
+
+/// Components at p of a slope given in the frame at q, carried along the great circle between them.
+fn carry_back(p: &Direction, q: &Direction, slope: &[f64]) -> [f64; 2] {
+    let (a, b) = tangent_frame(q);
+    let v = a * slope[0] + b * slope[1];
+    let (e1, e2) = tangent_frame(p);
+    let sum = p.into_inner() + q.into_inner();
+    let share = p.dot(&v) / (1.0 + p.dot(q)).max(1e-9);
+    let back = v - sum * share;
+    [e1.dot(&back), e2.dot(&back)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sph::direction::{even_directions, log};
+
+    #[test]
+    fn carrying_keeps_length_and_the_angle_with_the_way() {
+        let all = even_directions(20);
+        for (p, q) in all.iter().zip(&all[3..]) {
+            let back = carry_back(p, q, &[0.6, -0.8]);
+            assert!((dot(&back, &back) - 1.0).abs() <= 1e-12);
+            let (a, b) = tangent_frame(q);
+            let (e1, e2) = tangent_frame(p);
+            let with_way_at_q = -log(q, p).dot(&(a * 0.6 - b * 0.8));
+            let with_way_at_p = log(p, q).dot(&(e1 * back[0] + e2 * back[1]));
+            assert!((with_way_at_q - with_way_at_p).abs() <= 1e-12);
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! Hard limits on where contacts may be.
+
+use grasp::QualityError;
+use nalgebra::{Matrix3, Vector3};
+use shape::Surface;
+use sph::Direction;
+
+use crate::objective::Objective;
+use crate::quality::{LinearPieces, Quality, dot, in_frame, moved};
+
+/// The directions p with axis·p ≥ least_cosine: a half-space of directions at 0, a cone above it,
+/// the outside of a cone below it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cap {
+    /// Middle of the cap.
+    pub axis: Direction,
+    /// Cosine of its opening angle, in [−1, 1].
+    pub least_cosine: f64,
+}
+
+/// What every grasp of an ascent must keep. The default asks for nothing.
+#[derive(Clone, Debug, Default)]
+pub struct Constraints {
+    /// Least distance between any two contacts, metres.
+    pub least_separation: Option<f64>,
+    /// Largest distance between any two contacts, metres: what a hand can span.
+    pub reach: Option<f64>,
+    /// The allowed part of the surface: every contact's direction is in all of these.
+    pub caps: Vec<Cap>,
+    /// Force closure must hold under this objective too. With [`Objective::with_friction`] and a
+    /// smaller μ it is a margin of the friction cones.
+    pub closed_under: Option<Objective>,
+}
+
+/// Why no ascent can start.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ConstraintError {
+    /// A limit is no usable number.
+    #[error("{name} is {value}; expected {expected}")]
+    Limit {
+        /// Which one.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// No moves near the start satisfy the limits of place together.
+    #[error("the start cannot be moved inside the limits: {name} is still missed by {by}")]
+    Unreachable {
+        /// The limit missed most.
+        name: &'static str,
+        /// By how much: metres for distances, a cosine for caps.
+        by: f64,
+    },
+    /// Nothing near the start is closed under the second objective.
+    #[error("the start is not closed under the friction margin, by {by}, and no way leads there")]
+    FrictionMargin {
+        /// Distance from closure.
+        by: f64,
+    },
+}
+
+/// Rounds of moving back into the limits.
+const ROUNDS: usize = 60;
+/// Moves go this share of a limit's scale inside it, so that they end.
+const INSIDE: f64 = 1e-6;
+/// Largest move of one repair, radians.
+const REPAIR_STEP: f64 = 0.3;
+
+/// One limit at a place: slack ≥ 0 and its slope.
+struct Limit {
+    name: &'static str,
+    slack: f64,
+    /// What a small violation is measured against.
+    scale: f64,
+    /// Contacts and the derivative of the slack by each one's move.
+    by_move: [(usize, Vector3<f64>); 2],
+}
+
+impl Constraints {
+    /// Whether anything is asked for at all.
+    pub fn is_empty(&self) -> bool {
+        self.least_separation.is_none()
+            && self.reach.is_none()
+            && self.caps.is_empty()
+            && self.closed_under.is_none()
+    }
+
+    /// Checks the numbers.
+    pub fn validate(&self) -> Result<(), ConstraintError> {
+        let bad = |name, value, expected| {
+            Err(ConstraintError::Limit {
+                name,
+                value,
+                expected,
+            })
+        };
+        for (name, value) in [
+            ("least separation", self.least_separation),
+            ("reach", self.reach),
+        ] {
+            if let Some(value) = value
+                && !(value.is_finite() && value >= 0.0)
+            {
+                return bad(name, value, "metres ≥ 0");
+            }
+        }
+        if let (Some(least), Some(reach)) = (self.least_separation, self.reach)
+            && least > reach
+        {
+            return bad("least separation", least, "no more than the reach");
+        }
+        match self.caps.iter().find(|c| !(c.least_cosine.abs() <= 1.0)) {
+            Some(cap) => bad("cap", cap.least_cosine, "a cosine in [−1, 1]"),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether contacts keep the limits of place: separation, reach and caps.
+    pub fn allow(&self, surface: &impl Surface, contacts: &[Direction]) -> bool {
+        self.limits(surface, contacts)
+            .iter()
+            .all(|limit| limit.slack >= 0.0)
+    }
+
+    /// Contacts moved into the limits of place, each violated one in turn along its slope.
+    ///
+    /// Contacts that already keep them come back unchanged. Which grasp is found depends on where
+    /// the start is; it is near, not nearest.
+    pub fn repair(
+        &self,
+        surface: &impl Surface,
+        contacts: &[Direction],
+    ) -> Result<Vec<Direction>, ConstraintError> {
+        let mut here = contacts.to_vec();
+        for _ in 0..ROUNDS {
+            let mut kept = true;
+            for k in 0..self.limits(surface, &here).len() {
+                let limit = &self.limits(surface, &here)[k];
+                if limit.slack < 0.0 {
+                    kept = false;
+                    limit.step_inside(&mut here);
+                }
+            }
+            if kept {
+                return Ok(here);
+            }
+        }
+        let missed = self.limits(surface, &here);
+        let worst = missed.iter().min_by(|a, b| {
+            let share = |l: &Limit| l.slack / l.scale;
+            share(a).total_cmp(&share(b))
+        });
+        match worst {
+            Some(limit) if limit.slack < 0.0 => Err(ConstraintError::Unreachable {
+                name: limit.name,
+                by: -limit.slack,
+            }),
+            _ => Ok(here),
+        }
+    }
+
+    /// Every limit as a linear function of the contacts' moves, for the model of a step.
+    pub(crate) fn linearise<S: Surface>(
+        &mut self,
+        surface: &S,
+        contacts: &[Direction],
+        out: &mut LinearPieces,
+    ) -> Result<(), QualityError> {
+        out.reset(contacts.len());
+        if self.is_empty() {
+            return Ok(());
+        }
+        if let Some(second) = &mut self.closed_under {
+            let value = second.value(surface, contacts)?;
+            second.linearise(surface, contacts, out)?;
+            out.raise(value);
+        }
+        for limit in self.limits(surface, contacts) {
+            limit.write(contacts, out.push(limit.slack));
+        }
+        Ok(())
+    }
+
+    /// Whether contacts are closed under the second objective, where there is one.
+    pub(crate) fn closed<S: Surface>(
+        &mut self,
+        surface: &S,
+        contacts: &[Direction],
+    ) -> Result<bool, QualityError> {
+        match &mut self.closed_under {
+            Some(second) => Ok(second.value(surface, contacts)? > 0.0),
+            None => Ok(true),
+        }
+    }
+
+    fn limits(&self, surface: &impl Surface, contacts: &[Direction]) -> Vec<Limit> {
+        let mut limits = Vec::new();
+        for cap in &self.caps {
+            for (i, p) in contacts.iter().enumerate() {
+                limits.push(Limit {
+                    name: "a cap",
+                    slack: cap.axis.dot(p) - cap.least_cosine,
+                    scale: 1.0,
+                    by_move: [(i, cap.axis.into_inner()), (i, Vector3::zeros())],
+                });
+            }
+        }
+        if self.least_separation.is_none() && self.reach.is_none() {
+            return limits;
+        }
+        let at: Vec<(Vector3<f64>, Matrix3<f64>)> = contacts
+            .iter()
+            .map(|p| surface.differential(p))
+            .map(|d| (d.position.coords, d.position_slope.transpose()))
+            .collect();
+        for (i, (a, slope_a)) in at.iter().enumerate() {
+            for (j, (b, slope_b)) in at.iter().enumerate().skip(i + 1) {
+                let apart = a - b;
+                let distance = apart.norm();
+                let along = apart.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+                let by_move = [(i, slope_a * along), (j, -(slope_b * along))];
+                if let Some(least) = self.least_separation {
+                    limits.push(Limit {
+                        name: "the least separation",
+                        slack: distance - least,
+                        scale: least.max(1e-3),
+                        by_move,
+                    });
+                }
+                if let Some(reach) = self.reach {
+                    limits.push(Limit {
+                        name: "the reach",
+                        slack: reach - distance,
+                        scale: reach.max(1e-3),
+                        by_move: by_move.map(|(i, v)| (i, -v)),
+                    });
+                }
+            }
+        }
+        limits
+    }
+}
+
+impl Limit {
+    fn write(&self, contacts: &[Direction], slope: &mut [f64]) {
+        for (i, v) in &self.by_move {
+            let [a, b] = in_frame(&contacts[*i], v);
+            slope[2 * i] += a;
+            slope[2 * i + 1] += b;
+        }
+    }
+
+    /// The shortest move that, to first order, takes the slack just above 0.
+    fn step_inside(&self, contacts: &mut [Direction]) {
+        let mut slope = vec![0.0; 2 * contacts.len()];
+        self.write(contacts, &mut slope);
+        let square = dot(&slope, &slope);
+        if square == 0.0 {
+            // Contacts in one place, or at the far end of a cap's axis: any way out will do.
+            for (k, (i, _)) in self.by_move.iter().enumerate() {
+                slope[2 * i + k] += 1.0;
+            }
+        }
+        let square = dot(&slope, &slope);
+        let wanted = (INSIDE * self.scale - self.slack) / square;
+        let factor = wanted.min(REPAIR_STEP / square.sqrt());
+        for (p, u) in contacts.iter_mut().zip(slope.chunks_exact(2)) {
+            *p = moved(p, &[factor * u[0], factor * u[1]]);
+        }
+    }
+}

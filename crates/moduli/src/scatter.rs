@@ -1,0 +1,43 @@
+//! Nearby starts, always the same ones: an even sequence instead of a generator.
+
+use sph::Direction;
+use std::f64::consts::TAU;
+
+use crate::quality::moved;
+
+/// The k-th of a sequence of contacts around given ones, each moved by at most `spread` radians.
+///
+/// The R₂ sequence (powers of the plastic number) fills the discs evenly.
+pub(crate) fn nearby(contacts: &[Direction], k: usize, spread: f64) -> Vec<Direction> {
+    const PLASTIC: f64 = 1.324_717_957_244_746;
+    let place = |i: usize, step: f64| (0.5 + (k * contacts.len() + i + 1) as f64 * step).fract();
+    contacts
+        .iter()
+        .enumerate()
+        .map(|(i, p)| {
+            let turn = TAU * place(i, 1.0 / PLASTIC);
+            let length = spread * place(i, 1.0 / (PLASTIC * PLASTIC)).sqrt();
+            moved(p, &[length * turn.cos(), length * turn.sin()])
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sph::direction::{angle, even_directions};
+
+    #[test]
+    fn starts_are_near_and_differ() {
+        let contacts = even_directions(3);
+        let all: Vec<_> = (0..50).map(|k| nearby(&contacts, k, 0.4)).collect();
+        for (k, start) in all.iter().enumerate() {
+            for (p, q) in start.iter().zip(&contacts) {
+                assert!(angle(p, q) <= 0.4 + 1e-12);
+            }
+            for other in &all[..k] {
+                assert!(start.iter().zip(other).any(|(p, q)| angle(p, q) > 1e-3));
+            }
+        }
+    }
+}

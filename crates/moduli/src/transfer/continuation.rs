@@ -1,0 +1,342 @@
+//! Our transfer: a continuation along γ that looks where it steps, and starts again when it must.
+
+use grasp::QualityError;
+use shape::RadialField;
+use sph::Direction;
+use sph::direction::angle;
+
+use super::{StillOpen, Transfer, TransferError, Transferred, parameter, stations};
+use crate::ascent::{Ascent, MonotoneAscent, Step};
+use crate::quality::Quality;
+use crate::scatter::nearby;
+
+/// A monotone ascent at each station of γ, a longer one on the target, and other ways to get there.
+///
+/// A continuation can follow an optimum into a poor corner, while the naive transfer may land near
+/// a good one; both are climbed on the target, poor ends are recovered from, and the best of all
+/// is returned, so the result is never below the naive transfer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Continuation {
+    /// n intervals, n + 1 stations.
+    pub intervals: usize,
+    /// The ascent at each station but the last.
+    pub along: MonotoneAscent,
+    /// The ascent on the target.
+    pub at_end: MonotoneAscent,
+    /// When an interval is walked in two halves.
+    pub splitting: Splitting,
+    /// What is tried when the end is poor; nothing if absent.
+    pub recovery: Option<Recovery>,
+}
+
+/// When an interval between stations is too long.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Splitting {
+    /// Times that an interval may be halved.
+    pub depth: usize,
+    /// Split when the quality after the ascent is below this share of that before the interval.
+    pub least_kept: f64,
+    /// Split when the ascent carries a contact farther than this, radians.
+    pub longest_move: f64,
+}
+
+/// Starts around the naive transfer and around the best end, and another spacing of stations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Recovery {
+    /// Recover when the quality is below this share of that on the source; ∞ for always.
+    pub below: f64,
+    /// Starts that are looked at, one quality each.
+    pub probes: usize,
+    /// The best of them that climb.
+    pub climbs: usize,
+    /// Largest move of a contact for a start, radians.
+    pub spread: f64,
+    /// Intervals of a second continuation, when the end is still poor; none for 0.
+    pub intervals: usize,
+}
+
+impl Default for Continuation {
+    /// Four intervals with short ascents, then a full one; recovery from ends that lost a quarter.
+    fn default() -> Self {
+        let at_end = MonotoneAscent::default();
+        Self {
+            intervals: 4,
+            along: MonotoneAscent {
+                steps: 20,
+                restarts: 0,
+                ..at_end
+            },
+            at_end: MonotoneAscent {
+                restarts: 0,
+                ..at_end
+            },
+            splitting: Splitting {
+                depth: 2,
+                least_kept: 0.5,
+                longest_move: 0.8,
+            },
+            recovery: Some(Recovery {
+                below: 0.75,
+                probes: 24,
+                climbs: 3,
+                spread: 0.7,
+                intervals: 7,
+            }),
+        }
+    }
+}
+
+impl Continuation {
+    /// Always recovers, from more starts: about five times the cost, for the last few per cent.
+    pub fn thorough() -> Self {
+        Self {
+            recovery: Some(Recovery {
+                below: f64::INFINITY,
+                probes: 96,
+                climbs: 10,
+                spread: 0.9,
+                intervals: 7,
+            }),
+            ..Self::default()
+        }
+    }
+
+    /// The shapes γ(k/n), k = 0 … n; shared by all grasps of a pair.
+    pub fn stations(&self, transfer: &Transfer) -> Result<Vec<RadialField>, TransferError> {
+        stations(transfer, self.intervals)
+    }
+
+    /// Carries one grasp over `stations`; `trace` sees (t, state) of the first continuation.
+    pub fn carry(
+        &self,
+        transfer: &Transfer,
+        stations: &[RadialField],
+        contacts: &[Direction],
+        trace: impl FnMut(f64, &Step),
+    ) -> Result<Transferred, TransferError> {
+        let quality_on = |station: &RadialField| transfer.objective(station);
+        self.carry_by(transfer, stations, contacts, quality_on, trace)
+    }
+
+    /// The same for any quality; `quality_on` prepares it on a station.
+    ///
+    /// The convention of `transfer` is not used.
+    pub fn carry_by<Q: Quality<RadialField>>(
+        &self,
+        transfer: &Transfer,
+        stations: &[RadialField],
+        contacts: &[Direction],
+        quality_on: impl FnMut(&RadialField) -> Q,
+        mut trace: impl FnMut(f64, &Step),
+    ) -> Result<Transferred, TransferError> {
+        let mut carrier = Carrier {
+            scheme: self,
+            transfer,
+            target: stations.last().unwrap_or(transfer.to),
+            quality_on,
+            evaluations: 0,
+            climbs: 0,
+            lost_at: None,
+        };
+        let (start_quality, mut best) = carrier.follow(stations, contacts, &mut trace)?;
+        carrier.keep_better(&mut best, contacts)?;
+        if let Some(recovery) = &self.recovery {
+            let wanted = recovery.below * start_quality.max(f64::MIN_POSITIVE);
+            if best.quality < wanted {
+                carrier.scatter(recovery, contacts, &mut best)?;
+            }
+            if best.quality < wanted && best.quality < 0.5 * start_quality && recovery.intervals > 0
+            {
+                carrier.walk_again(recovery, contacts, &mut best)?;
+            }
+            if best.quality <= 0.0 {
+                carrier.restart(contacts, &mut best)?;
+            }
+        }
+        Ok(Transferred {
+            start_quality,
+            quality: best.quality,
+            evaluations: carrier.evaluations,
+            stationarity: Some(best.stationarity),
+            open: (best.quality <= 0.0).then_some(StillOpen {
+                distance: Some(-best.margin),
+                lost_at: carrier.lost_at,
+                climbs: carrier.climbs,
+            }),
+            contacts: best.contacts,
+        })
+    }
+}
+
+/// Restarts of the last resort.
+const LAST_RESTARTS: usize = 16;
+
+/// One transfer under way.
+struct Carrier<'a, F> {
+    scheme: &'a Continuation,
+    transfer: &'a Transfer<'a>,
+    target: &'a RadialField,
+    quality_on: F,
+    evaluations: usize,
+    /// Climbs made on the target.
+    climbs: usize,
+    lost_at: Option<f64>,
+}
+
+/// Where a continuation stands.
+struct Standing {
+    t: f64,
+    ascent: Ascent,
+}
+
+impl<Q: Quality<RadialField>, F: FnMut(&RadialField) -> Q> Carrier<'_, F> {
+    /// Walks over the stations; the quality at the start and the end.
+    fn follow(
+        &mut self,
+        stations: &[RadialField],
+        contacts: &[Direction],
+        trace: &mut impl FnMut(f64, &Step),
+    ) -> Result<(f64, Ascent), TransferError> {
+        let first = stations.first().unwrap_or(self.target);
+        let t = parameter(0, stations.len());
+        let ascent = self.climb(t, first, contacts, trace)?;
+        let start_quality = ascent.start_quality;
+        let mut here = Standing { t, ascent };
+        for (k, station) in stations.iter().enumerate().skip(1) {
+            let t = parameter(k, stations.len());
+            here = self.advance(here, t, station, 0, trace)?;
+        }
+        Ok((start_quality, here.ascent))
+    }
+
+    /// One interval, in halves where it is too long.
+    fn advance(
+        &mut self,
+        here: Standing,
+        t: f64,
+        station: &RadialField,
+        depth: usize,
+        trace: &mut impl FnMut(f64, &Step),
+    ) -> Result<Standing, TransferError> {
+        let splitting = &self.scheme.splitting;
+        // The states of a climb that is thrown away are no part of the trace.
+        let mut seen: Vec<(Vec<Direction>, f64, f64)> = Vec::new();
+        let keep = &mut |_: f64, step: &Step| {
+            seen.push((step.contacts.to_vec(), step.quality, step.stationarity));
+        };
+        let there = self.climb(t, station, &here.ascent.contacts, keep)?;
+        let lost = there.margin < splitting.least_kept * here.ascent.quality;
+        let farthest = farthest(&here.ascent.contacts, &there.contacts);
+        if depth < splitting.depth && (lost || farthest > splitting.longest_move) {
+            let middle = 0.5 * (here.t + t);
+            let halfway =
+                RadialField::deformation(self.transfer.from, self.transfer.to, middle)?;
+            let here = self.advance(here, middle, &halfway, depth + 1, trace)?;
+            return self.advance(here, t, station, splitting.depth, trace);
+        }
+        for (contacts, quality, stationarity) in &seen {
+            trace(
+                t,
+                &Step {
+                    contacts,
+                    quality: *quality,
+                    stationarity: *stationarity,
+                },
+            );
+        }
+        if here.ascent.quality > 0.0 && there.quality <= 0.0 {
+            self.lost_at.get_or_insert(t);
+        }
+        Ok(Standing { t, ascent: there })
+    }
+
+    /// Climbs on the target from more contacts and keeps the better end.
+    fn keep_better(&mut self, best: &mut Ascent, from: &[Direction]) -> Result<(), TransferError> {
+        let end = self.climb(1.0, self.target, from, &mut |_, _| {})?;
+        if end.margin > best.margin {
+            *best = end;
+        }
+        Ok(())
+    }
+
+    /// Climbs from the best of many starts around the naive transfer and around the best end.
+    fn scatter(
+        &mut self,
+        recovery: &Recovery,
+        contacts: &[Direction],
+        best: &mut Ascent,
+    ) -> Result<(), TransferError> {
+        let mut quality = (self.quality_on)(self.target);
+        let mut starts = Vec::with_capacity(recovery.probes);
+        for k in 0..recovery.probes {
+            let middle = if k % 3 == 2 { &best.contacts } else { contacts };
+            let start = nearby(middle, k, recovery.spread);
+            starts.push((quality.value(self.target, &start)?, start));
+        }
+        self.evaluations += quality.evaluations();
+        starts.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for (_, start) in starts.into_iter().take(recovery.climbs) {
+            self.keep_better(best, &start)?;
+        }
+        Ok(())
+    }
+
+    /// A second continuation with other stations.
+    fn walk_again(
+        &mut self,
+        recovery: &Recovery,
+        contacts: &[Direction],
+        best: &mut Ascent,
+    ) -> Result<(), TransferError> {
+        let others = stations(self.transfer, recovery.intervals)?;
+        let (_, end) = self.follow(&others, contacts, &mut |_, _| {})?;
+        if end.margin > best.margin {
+            *best = end;
+        }
+        Ok(())
+    }
+
+    /// What an ascent does from an open start, with more patience.
+    fn restart(
+        &mut self,
+        contacts: &[Direction],
+        best: &mut Ascent,
+    ) -> Result<(), TransferError> {
+        let patient = MonotoneAscent {
+            restarts: LAST_RESTARTS,
+            ..self.scheme.at_end
+        };
+        let mut quality = (self.quality_on)(self.target);
+        let end = patient.climb(self.target, contacts, &mut quality, |_| {})?;
+        self.evaluations += end.evaluations;
+        self.climbs += 1 + LAST_RESTARTS;
+        if end.margin > best.margin {
+            *best = end;
+        }
+        Ok(())
+    }
+
+    fn climb(
+        &mut self,
+        t: f64,
+        station: &RadialField,
+        from: &[Direction],
+        trace: &mut impl FnMut(f64, &Step),
+    ) -> Result<Ascent, QualityError> {
+        let settings = if t < 1.0 {
+            self.scheme.along
+        } else {
+            self.climbs += 1;
+            self.scheme.at_end
+        };
+        let mut quality = (self.quality_on)(station);
+        let ascent = settings.climb(station, from, &mut quality, |step| trace(t, step))?;
+        self.evaluations += ascent.evaluations;
+        Ok(ascent)
+    }
+}
+
+/// Largest angle between two lists of contacts, radians.
+fn farthest(a: &[Direction], b: &[Direction]) -> f64 {
+    a.iter().zip(b).map(|(p, q)| angle(p, q)).fold(0.0, f64::max)
+}
