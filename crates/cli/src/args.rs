@@ -244,7 +244,7 @@ pub(crate) struct TransferOptions {
     pub(crate) trace: Option<PathBuf>,
     #[arg(long, value_enum, default_value_t = TransferScheme::Ours)]
     pub(crate) scheme: TransferScheme,
-    /// Look for better ends even where the first is good; about five times slower.
+    /// Look for better ends even where the first is good; some seven times slower.
     #[arg(long)]
     pub(crate) thorough: bool,
     #[command(flatten)]

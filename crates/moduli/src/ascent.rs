@@ -5,7 +5,7 @@ mod climber;
 mod monotone;
 mod paper;
 
-pub use monotone::{AscentError, MonotoneAscent};
+pub use monotone::{AscentError, MonotoneAscent, WORTH};
 pub use paper::PaperAscent;
 
 use sph::Direction;

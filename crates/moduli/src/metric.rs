@@ -1,7 +1,7 @@
 //! The two metrics of Sec. III-C: on grasps, and on shapes with grasps.
 
 use grasp::{ContactCounts, Grasp};
-use shape::{RadialShape, space};
+use shape::{RadialShape, SphericalShape, space};
 
 /// Why two points have no distance.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -25,10 +25,27 @@ pub fn distance(
     (shape_a, grasp_a): (&RadialShape, &Grasp),
     (shape_b, grasp_b): (&RadialShape, &Grasp),
 ) -> Result<f64, MetricError> {
+    weighted(weight, space::distance(shape_a, shape_b), grasp_a, grasp_b)
+}
+
+/// The same on M^sph × (S²)^m, with d(f, f′) = (∫ |f−f′|²)^{1/2}.
+pub fn distance_spherical(
+    weight: f64,
+    (shape_a, grasp_a): (&SphericalShape, &Grasp),
+    (shape_b, grasp_b): (&SphericalShape, &Grasp),
+) -> Result<f64, MetricError> {
+    weighted(weight, shape_a.distance(shape_b), grasp_a, grasp_b)
+}
+
+fn weighted(
+    weight: f64,
+    shapes: f64,
+    grasp_a: &Grasp,
+    grasp_b: &Grasp,
+) -> Result<f64, MetricError> {
     if !(0.0..=1.0).contains(&weight) {
         return Err(MetricError::Weight { weight });
     }
-    let shapes = space::distance(shape_a, shape_b);
     let grasps = grasp::distance(grasp_a, grasp_b)?;
     Ok(weight * shapes + (1.0 - weight) * grasps)
 }

@@ -57,10 +57,7 @@ impl LinearPieces {
     /// Piece j: its excess and its slope g_j.
     pub fn get(&self, j: usize) -> (f64, &[f64]) {
         let start = j * self.dimension;
-        (
-            self.excess[j],
-            &self.slopes[start..start + self.dimension],
-        )
+        (self.excess[j], &self.slopes[start..start + self.dimension])
     }
 
     /// excess_j + g_j·u.

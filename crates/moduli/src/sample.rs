@@ -6,8 +6,9 @@ use nalgebra::Vector3;
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use shape::noise::perturb_band;
-use shape::{RadialError, RadialShape};
+use shape::{RadialError, RadialShape, SphericalError, SphericalShape};
 use sph::Direction;
+use sph::direction::{retract, tangent_frame};
 
 use crate::point::ModuliPoint;
 
@@ -39,5 +40,70 @@ pub fn perturbed(
     Ok(ModuliPoint {
         surface: RadialShape::new(noisy)?,
         contacts,
+    })
+}
+
+/// Where contacts are drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ContactSampling<'a> {
+    /// This many, uniform on the sphere.
+    Uniform(usize),
+    /// One around each of these, by a tangent vector with this standard deviation in both
+    /// coordinates, radians.
+    Around(&'a [Direction], f64),
+}
+
+impl ContactSampling<'_> {
+    /// Draws contacts.
+    pub fn draw(&self, rng: &mut impl Rng) -> Vec<Direction> {
+        match *self {
+            Self::Uniform(count) => (0..count).map(|_| uniform_direction(rng)).collect(),
+            Self::Around(contacts, deviation) => contacts
+                .iter()
+                .map(|p| {
+                    let (e1, e2) = tangent_frame(p);
+                    let mut normal = || -> f64 { StandardNormal.sample(rng) };
+                    retract(p, &((e1 * normal() + e2 * normal()) * deviation))
+                })
+                .collect(),
+        }
+    }
+}
+
+/// As [`perturbed`], with a choice of contacts.
+///
+/// The certificate is that of the shape, [`RadialShape::radius_bounds`].
+pub fn perturbed_radial(
+    shape: &RadialShape,
+    band: Range<usize>,
+    sigma: f64,
+    contacts: &ContactSampling,
+    rng: &mut impl Rng,
+) -> Result<ModuliPoint<RadialShape>, RadialError> {
+    let noisy = perturb_band(shape.coefficients(), band, sigma, rng);
+    Ok(ModuliPoint {
+        contacts: contacts.draw(rng),
+        surface: RadialShape::new(noisy)?,
+    })
+}
+
+/// A point of M^sph × (S²)^m: noise on the same band of all three coordinates.
+///
+/// The noisy surface is proved an immersion again ([`SphericalShape::immersion`]); a sample that is
+/// none is the error.
+pub fn perturbed_spherical(
+    shape: &SphericalShape,
+    band: Range<usize>,
+    sigma: f64,
+    contacts: &ContactSampling,
+    rng: &mut impl Rng,
+) -> Result<ModuliPoint<SphericalShape>, SphericalError> {
+    let [x, y, z] = shape
+        .coordinates()
+        .each_ref()
+        .map(|c| perturb_band(c, band.clone(), sigma, rng));
+    Ok(ModuliPoint {
+        contacts: contacts.draw(rng),
+        surface: SphericalShape::new(x, y, z)?,
     })
 }

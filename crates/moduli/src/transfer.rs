@@ -64,7 +64,11 @@ pub struct StillOpen {
 
 impl std::fmt::Display for StillOpen {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "no closed grasp after {} climbs on the target", self.climbs)?;
+        write!(
+            f,
+            "no closed grasp after {} climbs on the target",
+            self.climbs
+        )?;
         if let Some(distance) = self.distance {
             write!(f, ", the best is {distance:.4} from closure")?;
         }

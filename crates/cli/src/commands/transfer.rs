@@ -3,7 +3,9 @@
 use std::time::Instant;
 
 use moduli::transfer::Transfer;
-use moduli::{Continuation, Objective, PaperAscent, PaperTransfer, Step, TransferError, Transferred};
+use moduli::{
+    Continuation, Objective, PaperAscent, PaperTransfer, Step, TransferError, Transferred,
+};
 use rayon::prelude::*;
 use record::grasps::SourceRecord;
 use shape::{RadialField, Surface, space};
@@ -41,8 +43,9 @@ pub(crate) fn run(options: &TransferOptions, common: &Common) -> Result<(), Fail
         object_origin: to.origin(),
     };
     let start = Instant::now();
-    let scheme = prepare(options, &transfer)
-        .map_err(|e| Failure::refused(format!("{} to {}: {e}", from.record.name, to.record.name)))?;
+    let scheme = prepare(options, &transfer).map_err(|e| {
+        Failure::refused(format!("{} to {}: {e}", from.record.name, to.record.name))
+    })?;
     let source = source(&from, &to);
     let bar = output::progress(common.quiet, grasps.len(), "transferring");
     let moved = grasps

@@ -1,6 +1,6 @@
-//! Fig. 7, Fig. 8 and Sec. IV-D: the paper's ascent from the grasps of G_i.
+//! Fig. 7, Fig. 8 and Sec. IV-D: the paper's ascent and ours from the grasps of G_i.
 
-use moduli::PaperAscent;
+use moduli::{MonotoneAscent, PaperAscent};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::json;
@@ -55,11 +55,26 @@ pub struct Climb {
     pub last: f64,
     /// The largest Q on the way.
     pub highest: f64,
+    /// Qualities computed.
+    pub evaluations: usize,
+    /// Our ascent from the same start.
+    pub ours: OurClimb,
     /// The contacts at the start.
     #[serde(skip)]
     pub start: Vec<Direction>,
     /// Largest angle between where a contact began and where it ended, radians.
     pub moved_rad: f64,
+}
+
+/// Where our ascent ended.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct OurClimb {
+    /// Q at the end.
+    pub last: f64,
+    /// Qualities computed.
+    pub evaluations: usize,
+    /// Slope of Q left at the end, per radian.
+    pub stationarity: f64,
 }
 
 /// The ascents on one object.
@@ -88,6 +103,14 @@ pub struct Overall {
     pub mean_change: Option<f64>,
     /// Mean of Q lost between the highest state and the end: what the fixed step throws away.
     pub mean_lost_from_highest: Option<f64>,
+    /// Our ascent from the same starts: share that ended higher.
+    pub ours_share_improved: Option<f64>,
+    /// Ours that ended lower than they began.
+    pub ours_below_start: usize,
+    /// Ours: mean of Q at the ends.
+    pub ours_mean_final: Option<f64>,
+    /// Qualities that the paper's ascent computes for one of ours.
+    pub evaluations_ratio: Option<f64>,
 }
 
 /// Runs the section.
@@ -162,6 +185,7 @@ fn climb(
         .climb(&fitted.surface, start, &mut objective, |step| {
             highest = highest.max(step.quality);
         })?;
+    let own = MonotoneAscent::default().climb(&fitted.surface, start, &mut objective, |_| {})?;
     let moved = start
         .iter()
         .zip(&ascent.contacts)
@@ -170,6 +194,12 @@ fn climb(
         initial: ascent.start_quality,
         last: ascent.quality,
         highest,
+        evaluations: ascent.evaluations,
+        ours: OurClimb {
+            last: own.quality,
+            evaluations: own.evaluations,
+            stationarity: own.stationarity,
+        },
         start: start.to_vec(),
         moved_rad: moved.fold(0.0, f64::max),
     })
@@ -239,6 +269,7 @@ pub fn overall(climbs: &[Climb]) -> Overall {
     let mean_of = |pick: fn(&Climb) -> f64| mean(&climbs.iter().map(pick).collect::<Vec<_>>());
     let share_of =
         |which: fn(&&Climb) -> bool| share(climbs.iter().filter(which).count(), climbs.len());
+    let total = |pick: fn(&Climb) -> usize| climbs.iter().map(pick).sum::<usize>();
     Overall {
         climbs: climbs.len(),
         share_improved: share_of(|c| c.last > c.initial),
@@ -247,6 +278,10 @@ pub fn overall(climbs: &[Climb]) -> Overall {
         mean_final: mean_of(|c| c.last),
         mean_change: mean_of(|c| c.last - c.initial),
         mean_lost_from_highest: mean_of(|c| c.highest - c.last),
+        ours_share_improved: share_of(|c| c.ours.last > c.initial),
+        ours_below_start: climbs.iter().filter(|c| c.ours.last < c.initial).count(),
+        ours_mean_final: mean_of(|c| c.ours.last),
+        evaluations_ratio: share(total(|c| c.evaluations), total(|c| c.ours.evaluations)),
     }
 }
 
@@ -280,6 +315,8 @@ fn table(plan: &Plan, ours: &[ObjectClimbs], overall: &Overall) -> Table {
             "initial",
             "final",
             "best final",
+            "ours",
+            "ours worse",
         ],
     );
     for o in ours {
@@ -293,6 +330,8 @@ fn table(plan: &Plan, ours: &[ObjectClimbs], overall: &Overall) -> Table {
             number(of.mean_initial, 3),
             number(of.mean_final, 3),
             number(summary(&ends).map(|s| s.greatest), 3),
+            number(of.ours_mean_final, 3),
+            of.ours_below_start.to_string(),
         ]);
     }
     table.row([
@@ -303,12 +342,19 @@ fn table(plan: &Plan, ours: &[ObjectClimbs], overall: &Overall) -> Table {
         number(overall.mean_initial, 3),
         number(overall.mean_final, 3),
         String::new(),
+        number(overall.ours_mean_final, 3),
+        overall.ours_below_start.to_string(),
     ]);
     let pairs = |list: &[(f64, f64)]| {
         let text: Vec<String> = list.iter().map(|(a, b)| format!("{a:.2}→{b:.2}")).collect();
         text.join(", ")
     };
     let all: Vec<Climb> = ours.iter().flat_map(|o| o.climbs.iter().cloned()).collect();
+    table.note(format!(
+        "Ours from the same starts: {} improved, none of its steps down; the paper's computes {} times as many qualities",
+        per_cent(overall.ours_share_improved),
+        number(overall.evaluations_ratio, 1)
+    ));
     table.note(format!(
         "Largest improvements {}; examples of the paper {}",
         pairs(&examples(&all)),

@@ -1,8 +1,8 @@
 //! Fig. 9 and Sec. IV-E: grasps carried from every object to every other.
 
 use hand::HandGrasp;
-use moduli::PaperTransfer;
 use moduli::transfer::Transfer;
+use moduli::{Continuation, PaperTransfer};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::json;
@@ -17,7 +17,7 @@ use crate::pipeline::{
 };
 use crate::run::Run;
 use crate::sections::gradient_ascent::paper_ascent;
-use crate::statistics::mean;
+use crate::statistics::{mean, share};
 use crate::table::{Table, number};
 
 /// What is computed.
@@ -64,6 +64,12 @@ pub struct Carried {
     pub last: f64,
     /// Q on the target with θ and φ kept.
     pub naive: f64,
+    /// Q on the target after our transfer.
+    pub ours: f64,
+    /// Qualities that the paper's transfer computed.
+    pub evaluations: usize,
+    /// Qualities that ours computed.
+    pub evaluations_ours: usize,
 }
 
 /// Transfers in short.
@@ -85,6 +91,12 @@ pub struct Count {
     pub mean_final: Option<f64>,
     /// Mean of Q on the target, naive.
     pub mean_naive: Option<f64>,
+    /// Of quality below 0.01 after our transfer.
+    pub unstable_ours: usize,
+    /// Mean of Q on the target, ours.
+    pub mean_ours: Option<f64>,
+    /// Qualities that the paper's transfer computes for one of ours.
+    pub evaluations_ratio: Option<f64>,
 }
 
 /// Runs the section.
@@ -160,6 +172,8 @@ fn carry(
         object_origin: to.object_origin(),
     };
     let stations = plan.transfer.stations(&transfer)?;
+    let ours = Continuation::default();
+    let own_stations = ours.stations(&transfer)?;
     grasps
         .par_iter()
         .enumerate()
@@ -169,6 +183,7 @@ fn carry(
                 .transfer
                 .carry(&transfer, &stations, start, |_, _| {})?;
             let naive = transfer.naive(start)?;
+            let own = ours.carry(&transfer, &own_stations, start, |_, _| {})?;
             Ok(Carried {
                 from: from.id().to_owned(),
                 to: to.id().to_owned(),
@@ -176,6 +191,9 @@ fn carry(
                 initial: end.start_quality,
                 last: end.quality,
                 naive: naive.quality,
+                ours: own.quality,
+                evaluations: end.evaluations,
+                evaluations_ours: own.evaluations,
             })
         })
         .collect()
@@ -251,6 +269,8 @@ fn count(run: &Run, from: &str, carried: &[&Carried], unstable_in_paper: Option<
             .count()
     };
     let (initial, last, naive) = (list(|c| c.initial), list(|c| c.last), list(|c| c.naive));
+    let ours = list(|c| c.ours);
+    let total = |pick: fn(&Carried) -> usize| carried.iter().map(|c| pick(c)).sum::<usize>();
     Count {
         from: from.to_owned(),
         transfers: carried.len(),
@@ -260,6 +280,9 @@ fn count(run: &Run, from: &str, carried: &[&Carried], unstable_in_paper: Option<
         mean_initial: mean(&initial),
         mean_final: mean(&last),
         mean_naive: mean(&naive),
+        unstable_ours: unstable(&ours),
+        mean_ours: mean(&ours),
+        evaluations_ratio: share(total(|c| c.evaluations), total(|c| c.evaluations_ours)),
     }
 }
 
@@ -285,6 +308,9 @@ fn table(plan: &Plan, counts: &[Count]) -> Table {
             "initial",
             "final",
             "naive",
+            "ours Q < 0.01",
+            "ours",
+            "evaluations",
         ],
     );
     for c in counts {
@@ -305,8 +331,12 @@ fn table(plan: &Plan, counts: &[Count]) -> Table {
             number(c.mean_initial, 3),
             number(c.mean_final, 3),
             number(c.mean_naive, 3),
+            c.unstable_ours.to_string(),
+            number(c.mean_ours, 3),
+            number(c.evaluations_ratio, 1),
         ]);
     }
+    table.note("evaluations: qualities that the paper's transfer computes for one of ours");
     table.note(format!(
         "The paper carried {} grasps, {} of which ended unstable",
         paper::TRANSFERS,

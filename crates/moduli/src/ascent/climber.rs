@@ -127,7 +127,11 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         if value.is_finite() && self.pieces.len() < MOST_PIECES {
             self.remember(value)?;
         }
-        Ok(if kept_promise.is_nan() { -1.0 } else { kept_promise.min(0.99 * ACCEPT) })
+        Ok(if kept_promise.is_nan() {
+            -1.0
+        } else {
+            kept_promise.min(0.99 * ACCEPT)
+        })
     }
 
     /// Whether the trial state keeps every limit, after a repair of what curvature took away.

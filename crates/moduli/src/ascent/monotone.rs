@@ -26,9 +26,13 @@ pub struct MonotoneAscent {
     pub stationarity: f64,
     /// Stop when the model promises less than this.
     pub least_gain: f64,
-    /// New starts when a climb ends open: around where it began, ever farther.
+    /// New starts when a climb ends open, or from an open start below [`WORTH`]: around where it
+    /// began, ever farther.
     pub restarts: usize,
 }
+
+/// Quality below which an ascent from an open start tries others: what the paper calls unstable.
+pub const WORTH: f64 = 0.01;
 
 impl Default for MonotoneAscent {
     /// Converges to about 1e-5 of Q on household objects.
@@ -108,7 +112,8 @@ impl MonotoneAscent {
             return Ok(start);
         };
         let least = f64::MIN_POSITIVE;
-        let reached = self.climb_or_restart(surface, &start, &mut second, constraints, least, |_| {});
+        let reached =
+            self.climb_or_restart(surface, &start, &mut second, constraints, least, |_| {});
         constraints.closed_under = Some(second);
         let reached = reached?;
         if reached.margin > 0.0 {
@@ -143,7 +148,14 @@ impl MonotoneAscent {
         let from = start.to_vec();
         let mut best = self.climb_once(surface, from, quality, constraints, enough, &mut trace)?;
         for k in 0..self.restarts {
-            if best.margin > 0.0 {
+            let started_closed = best.start_quality > 0.0;
+            if best.margin
+                > if started_closed {
+                    0.0
+                } else {
+                    WORTH.min(enough)
+                }
+            {
                 break;
             }
             let Some(from) = self.probe(surface, start, k, quality, constraints)? else {

@@ -53,6 +53,9 @@ pub struct Recovery {
     pub spread: f64,
     /// Intervals of a second continuation, when the end is still poor; none for 0.
     pub intervals: usize,
+    /// Last climbs from close around the best end: pyramids of friction make Q jump where their
+    /// frames do, and a climb can stop at such a step.
+    pub polish: usize,
 }
 
 impl Default for Continuation {
@@ -81,21 +84,23 @@ impl Default for Continuation {
                 climbs: 3,
                 spread: 0.7,
                 intervals: 7,
+                polish: 0,
             }),
         }
     }
 }
 
 impl Continuation {
-    /// Always recovers, from more starts: about five times the cost, for the last few per cent.
+    /// Always recovers, from more starts: some seven times the cost, for the last few per cent.
     pub fn thorough() -> Self {
         Self {
             recovery: Some(Recovery {
                 below: f64::INFINITY,
-                probes: 96,
-                climbs: 10,
+                probes: 128,
+                climbs: 12,
                 spread: 0.9,
                 intervals: 7,
+                polish: 6,
             }),
             ..Self::default()
         }
@@ -152,6 +157,12 @@ impl Continuation {
             if best.quality <= 0.0 {
                 carrier.restart(contacts, &mut best)?;
             }
+            if best.quality < wanted {
+                for k in 0..recovery.polish {
+                    let close = nearby(&best.contacts, k, POLISH_SPREAD);
+                    carrier.keep_better(&mut best, &close)?;
+                }
+            }
         }
         Ok(Transferred {
             start_quality,
@@ -168,6 +179,8 @@ impl Continuation {
     }
 }
 
+/// Largest move of a contact before a last climb, radians.
+const POLISH_SPREAD: f64 = 0.1;
 /// Restarts of the last resort.
 const LAST_RESTARTS: usize = 16;
 
@@ -229,8 +242,7 @@ impl<Q: Quality<RadialField>, F: FnMut(&RadialField) -> Q> Carrier<'_, F> {
         let farthest = farthest(&here.ascent.contacts, &there.contacts);
         if depth < splitting.depth && (lost || farthest > splitting.longest_move) {
             let middle = 0.5 * (here.t + t);
-            let halfway =
-                RadialField::deformation(self.transfer.from, self.transfer.to, middle)?;
+            let halfway = RadialField::deformation(self.transfer.from, self.transfer.to, middle)?;
             let here = self.advance(here, middle, &halfway, depth + 1, trace)?;
             return self.advance(here, t, station, splitting.depth, trace);
         }
@@ -297,11 +309,7 @@ impl<Q: Quality<RadialField>, F: FnMut(&RadialField) -> Q> Carrier<'_, F> {
     }
 
     /// What an ascent does from an open start, with more patience.
-    fn restart(
-        &mut self,
-        contacts: &[Direction],
-        best: &mut Ascent,
-    ) -> Result<(), TransferError> {
+    fn restart(&mut self, contacts: &[Direction], best: &mut Ascent) -> Result<(), TransferError> {
         let patient = MonotoneAscent {
             restarts: LAST_RESTARTS,
             ..self.scheme.at_end
@@ -338,5 +346,8 @@ impl<Q: Quality<RadialField>, F: FnMut(&RadialField) -> Q> Carrier<'_, F> {
 
 /// Largest angle between two lists of contacts, radians.
 fn farthest(a: &[Direction], b: &[Direction]) -> f64 {
-    a.iter().zip(b).map(|(p, q)| angle(p, q)).fold(0.0, f64::max)
+    a.iter()
+        .zip(b)
+        .map(|(p, q)| angle(p, q))
+        .fold(0.0, f64::max)
 }

@@ -128,7 +128,14 @@ mod tests {
         let short: Vec<_> = jobs.iter().map(|j| (j.from, j.to, j.grasp)).collect();
         assert_eq!(
             short,
-            [(0, 1, 0), (0, 1, 1), (0, 2, 0), (0, 2, 1), (1, 0, 0), (1, 2, 0)]
+            [
+                (0, 1, 0),
+                (0, 1, 1),
+                (0, 2, 0),
+                (0, 2, 1),
+                (1, 0, 0),
+                (1, 2, 0)
+            ]
         );
         assert_eq!(all_pairs(&[10; 12]).len(), 1320);
     }
