@@ -70,7 +70,9 @@ fn reading(c: &mut Criterion) {
     c.bench_function("jet by the full sum", |b| {
         b.iter(|| basis.jet(&beta, black_box(&points[7]), &mut work));
     });
-    c.bench_function("field set-up", |b| b.iter(|| Field::new(black_box(&beta), 1e-9)));
+    c.bench_function("field set-up", |b| {
+        b.iter(|| Field::new(black_box(&beta), 1e-9))
+    });
 }
 
 fn whole(c: &mut Criterion) {

@@ -4,6 +4,7 @@ use grasp::QualityError;
 use nalgebra::{Matrix3, Vector3};
 use shape::Surface;
 use sph::Direction;
+use sph::direction::{log, retract};
 
 use crate::objective::Objective;
 use crate::quality::{LinearPieces, Quality, dot, in_frame, moved};
@@ -62,11 +63,15 @@ pub enum ConstraintError {
 }
 
 /// Rounds of moving back into the limits.
-const ROUNDS: usize = 60;
+const ROUNDS: usize = 80;
+/// Move of each contact where slopes of the surface mislead, radians.
+const STEP_AROUND: f64 = 0.03;
 /// Moves go this share of a limit's scale inside it, so that they end.
 const INSIDE: f64 = 1e-6;
 /// Largest move of one repair, radians.
 const REPAIR_STEP: f64 = 0.3;
+
+const REACH: &str = "the reach";
 
 /// One limit at a place: slack ≥ 0 and its slope.
 struct Limit {
@@ -134,13 +139,17 @@ impl Constraints {
         contacts: &[Direction],
     ) -> Result<Vec<Direction>, ConstraintError> {
         let mut here = contacts.to_vec();
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS {
             let mut kept = true;
             for k in 0..self.limits(surface, &here).len() {
                 let limit = &self.limits(surface, &here)[k];
                 if limit.slack < 0.0 {
                     kept = false;
-                    limit.step_inside(&mut here);
+                    if round < ROUNDS / 2 {
+                        limit.step_inside(&mut here);
+                    } else {
+                        limit.step_around(&mut here);
+                    }
                 }
             }
             if kept {
@@ -231,7 +240,7 @@ impl Constraints {
                 }
                 if let Some(reach) = self.reach {
                     limits.push(Limit {
-                        name: "the reach",
+                        name: REACH,
                         slack: reach - distance,
                         scale: reach.max(1e-3),
                         by_move: by_move.map(|(i, v)| (i, -v)),
@@ -250,6 +259,26 @@ impl Limit {
             slope[2 * i] += a;
             slope[2 * i + 1] += b;
         }
+    }
+
+    /// Moves a pair along the sphere, together for the reach and apart for the separation: bumps of
+    /// the surface can trap the way along slopes.
+    fn step_around(&self, contacts: &mut [Direction]) {
+        let [(i, _), (j, _)] = self.by_move;
+        if i == j {
+            self.step_inside(contacts);
+            return;
+        }
+        let length = match self.name {
+            REACH => STEP_AROUND,
+            _ => -STEP_AROUND,
+        };
+        let (p, q) = (contacts[i], contacts[j]);
+        let towards = |p: &Direction, q: &Direction| {
+            let way = log(p, q);
+            retract(p, &(way * (length / way.norm().max(STEP_AROUND))))
+        };
+        (contacts[i], contacts[j]) = (towards(&p, &q), towards(&q, &p));
     }
 
     /// The shortest move that, to first order, takes the slack just above 0.

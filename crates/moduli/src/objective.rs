@@ -1,7 +1,7 @@
 //! Grasp quality as a function of contacts on one surface, under one convention.
 
 use grasp::{
-    ActiveFacet, CentreRule, Contact, Convention, Epsilon, FrameRule, Gradient, Margin,
+    ActiveFacet, CentreRule, Contact, Convention, Edges, Epsilon, FrameRule, Gradient, Margin,
     QualityError, Setup, TorqueLength, Workspace,
 };
 use nalgebra::Point3;
@@ -184,7 +184,10 @@ impl<S: Surface> Quality<S> for Objective {
         self.differentiate(surface, contacts);
         let mut facets = std::mem::take(&mut self.scratch.facets);
         facets.clear();
-        if margin.closed {
+        // A round cone has no facets but those of its approximation, all of them near one another:
+        // what decides elsewhere is learnt from rejected steps.
+        let polygon = matches!(self.convention.edges, Edges::Polygon(_));
+        if margin.closed && polygon {
             let band = 0.25 * margin.value + 1e-3;
             let realised = std::mem::take(&mut self.contacts);
             let found = self.near_active_facets(&realised, band, &mut facets);

@@ -201,8 +201,9 @@ mod tests {
         assert_eq!(Quality::<()>::evaluations(&quality), 8);
         for (i, p) in contacts.iter().enumerate() {
             let exact = in_frame(p, &target);
-            for k in 0..2 {
-                assert!((pieces.get(0).1[2 * i + k] - exact[k]).abs() <= 1e-9);
+            let found = &pieces.get(0).1[2 * i..2 * i + 2];
+            for (a, b) in found.iter().zip(&exact) {
+                assert!((a - b).abs() <= 1e-9);
             }
         }
     }

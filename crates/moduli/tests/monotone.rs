@@ -82,11 +82,6 @@ fn it_beats_a_thousand_fixed_steps_with_a_twentieth_of_the_evaluations() {
         ours_cost += a.evaluations;
         theirs_cost += b.evaluations;
     }
-    eprintln!(
-        "mean quality {:.4} with {ours_cost} evaluations, fixed step {:.4} with {theirs_cost}",
-        ours / 6.0,
-        theirs / 6.0
-    );
     assert!(ours >= theirs - 6.0 * 1e-3);
     assert!(20 * ours_cost <= theirs_cost);
 }

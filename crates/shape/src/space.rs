@@ -76,7 +76,7 @@ pub fn convex_combination(
     cone(weights, shapes)
 }
 
-/// γ(t) = (1−t) f₁ + t f₂ for t ∈ [0,1] (Sec. III-A).
+/// γ(t) = (1−t) f₁ + t f₂ for 0 ≤ t ≤ 1 (Sec. III-A).
 pub fn deformation(
     from: &RadialShape,
     to: &RadialShape,

@@ -101,7 +101,7 @@ pub fn log(p: &Direction, q: &Direction) -> Vector3<f64> {
     }
 }
 
-/// The point at parameter t ∈ [0,1] of the shorter great circle from p to q.
+/// The point at parameter 0 ≤ t ≤ 1 of the shorter great circle from p to q.
 pub fn geodesic(p: &Direction, q: &Direction, t: f64) -> Direction {
     retract(p, &(log(p, q) * t))
 }

@@ -36,7 +36,7 @@ pub(crate) fn cyclic() -> Rotation3<f64> {
 
 /// The function after heat has flowed for a time σ: β_{lm} e^{−l(l+1)σ}.
 ///
-/// The weighted spherical harmonics of the paper's reference [13]: a smoothing that damps the
+/// The weighted spherical harmonics of the paper's reference 13: a smoothing that damps the
 /// ringing of a truncated series. The mean is kept, maxima never grow, and doses add up.
 pub fn heat_flow(beta: &Coefficients, sigma: f64) -> Coefficients {
     let mut out = beta.clone();
