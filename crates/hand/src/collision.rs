@@ -2,6 +2,7 @@
 
 mod object;
 mod piece;
+mod piece_frame;
 mod self_distance;
 mod tree;
 
