@@ -15,8 +15,8 @@ const TOLERANCE: f64 = 1e-12;
 
 /// A [`RadialShape`] whose r, ∇r and ∇²r come from a [`Field`] instead of a sum of (L+1)² terms.
 ///
-/// The same surface to about 1e-12 of its size, some fifty times faster a point at L = 50; made
-/// once for an ascent.
+/// The same surface to about 1e-12 of its size, some ten times faster a point at L = 50; made once
+/// for an ascent.
 #[derive(Clone, Debug)]
 pub struct RadialField {
     shape: RadialShape,
