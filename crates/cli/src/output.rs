@@ -23,6 +23,12 @@ pub(crate) fn say_json(value: &impl Serialize) -> Result<(), Failure> {
     Ok(())
 }
 
+/// The text of a JSON file.
+pub(crate) fn encode(value: &impl Serialize) -> Result<Vec<u8>, Failure> {
+    serde_json::to_vec_pretty(value)
+        .map_err(|e| Failure::other(format!("cannot encode the result as JSON: {e}")))
+}
+
 /// Something the user should know, that stops nothing.
 pub(crate) fn warn(line: impl AsRef<str>) {
     eprintln!("warning: {}", line.as_ref());

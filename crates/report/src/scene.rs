@@ -18,7 +18,7 @@ pub struct Scene {
     pub title: String,
     /// Axis titles with their unit, as in `"x / mm"`; `None` draws no axes.
     pub axes: Option<[String; 3]>,
-    /// What is shown; points and lines take the colours of the palette in this order.
+    /// What is shown; parts, points and lines take the colours of the palette in this order.
     pub items: Vec<Item>,
     /// How surface values become colours.
     pub colour_scale: ColourScale,
