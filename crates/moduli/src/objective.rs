@@ -67,7 +67,7 @@ impl Objective {
         Self {
             convention,
             centre,
-            workspace: Workspace::new(),
+            workspace: Workspace::following(),
             contacts: Vec::new(),
             evaluations: 0,
             scratch: Scratch::default(),

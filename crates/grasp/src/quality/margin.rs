@@ -89,7 +89,7 @@ pub struct Margin {
 /// the face that the ball touches, found to rounding by Newton's method where the touching point is
 /// regular, whatever the width of the interval.
 pub fn margin(setup: &Setup<'_>, workspace: &mut Workspace) -> Result<Margin, QualityError> {
-    workspace.load(setup)?;
+    workspace.load_next(setup)?;
     match workspace.ball(requested_gap(setup.convention.edges)) {
         Ball::Open { direction } => Ok(outside(workspace, &direction)),
         Ball::Closed {
@@ -138,7 +138,7 @@ pub fn near_active_facets(
     let level = facet.offset + band;
     let nearest = workspace.finish(level, gap);
     for at in workspace.search.polytope.alive() {
-        if at != nearest && workspace.search.polytope.keys[at] <= level {
+        if at != nearest && workspace.search.polytope.bound(at) <= level {
             out.extend(simplex_facet(workspace, at));
         }
     }
