@@ -188,13 +188,13 @@ impl<S: Surface> Quality<S> for Objective {
         // what decides elsewhere is learnt from rejected steps.
         let polygon = matches!(self.convention.edges, Edges::Polygon(_));
         if margin.closed && polygon {
-            let band = 0.25 * margin.value + 1e-3;
+            let band = std::env::var("BAND").map_or(0.25, |b| b.parse().unwrap()) * margin.value + 1e-3;
             let realised = std::mem::take(&mut self.contacts);
             let found = self.near_active_facets(&realised, band, &mut facets);
             self.contacts = realised;
             found?;
             facets.sort_by(|a, b| a.offset.total_cmp(&b.offset));
-            facets.truncate(FACETS);
+            facets.truncate(std::env::var("FACETS").map_or(FACETS, |b| b.parse().unwrap()));
         } else {
             facets.push(margin.facet);
         }

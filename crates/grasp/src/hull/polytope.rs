@@ -138,11 +138,10 @@ impl Polytope {
         best.0
     }
 
-    /// The facets up to `level` that are not finished, the nearest first; none for a clear `out`.
-    pub(crate) fn open_facets(&self, level: f64, out: &mut Vec<u32>) {
-        let open = |&f: &usize| self.is_open(f, level);
+    /// The facets up to `level`, the nearest first; `out` is emptied before.
+    pub(crate) fn up_to(&self, level: f64, out: &mut Vec<u32>) {
         out.clear();
-        out.extend((0..self.keys.len()).filter(open).map(|f| f as u32));
+        out.extend((0..self.keys.len() as u32).filter(|&f| self.bound(f as usize) <= level));
         let key = |f: &u32| self.keys[*f as usize];
         out.sort_unstable_by(|a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
     }

@@ -132,7 +132,8 @@ impl Search {
         let mut open = std::mem::take(&mut self.open);
         let mut done = true;
         loop {
-            self.polytope.open_facets(level, &mut open);
+            self.polytope.up_to(level, &mut open);
+            open.retain(|&f| self.polytope.is_open(f as usize, level));
             if open.is_empty() || !done {
                 break;
             }

@@ -26,6 +26,9 @@ pub struct Workspace {
     /// Whether the polytope of the last search belongs to the points as they were then.
     fits: bool,
     owners_before: Vec<u32>,
+    /// Facets up to some level, and those of them that were taken.
+    pub(crate) near: Vec<u32>,
+    pub(crate) taken: Vec<u32>,
     /// The vertices of one plane, and their tags.
     pub(crate) flat: Vec<V6>,
     pub(crate) flat_tags: Vec<u32>,
