@@ -140,7 +140,13 @@ impl Search {
             for &facet in &open {
                 // What was added since may have taken it away.
                 if done && self.polytope.is_open(facet as usize, level) {
-                    done = self.finish_facet(source, facet as usize, level, gap.max(tolerance), tolerance);
+                    done = self.finish_facet(
+                        source,
+                        facet as usize,
+                        level,
+                        gap.max(tolerance),
+                        tolerance,
+                    );
                 }
             }
         }

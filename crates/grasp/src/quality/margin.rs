@@ -145,7 +145,9 @@ pub fn near_active_facets(
     taken.clear();
     taken.push(nearest as u32);
     for &at in &near {
-        if !taken.iter().any(|&t| same_facet(workspace, t as usize, at as usize))
+        if !taken
+            .iter()
+            .any(|&t| same_facet(workspace, t as usize, at as usize))
             && let Some(facet) = simplex_facet(workspace, at as usize)
         {
             taken.push(at);
