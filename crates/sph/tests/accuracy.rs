@@ -65,7 +65,7 @@ fn sums(degree: usize) -> [f64; 2] {
 /// Worst errors of value, gradient and Hessian over the largest value, gradient and Hessian.
 fn field(degree: usize) -> [f64; 3] {
     let beta = surface(degree);
-    let field = Field::new(&beta, 1e-11);
+    let field = Field::new(&beta);
     let basis = Basis::new(degree);
     let mut work = basis.workspace();
     let (mut errors, mut scales) = ([0.0_f64; 3], [0.0_f64; 3]);
