@@ -16,9 +16,6 @@ use crate::index;
 use crate::kernel::{TAPS, Taps};
 use crate::torus::{Torus, TorusGrid};
 
-/// Taps for sums to about 1e-14 of the largest value; all that there are.
-const WIDTH: usize = TAPS;
-const OVERSAMPLING: f64 = 2.0;
 /// Points handled by one task of [`Scattered::evaluate`].
 const CHUNK: usize = 2048;
 /// Tiles from pole to pole; a power of two, so that a point's band follows from θ without rounding.
@@ -79,7 +76,7 @@ impl Scattered {
     ///
     /// Errors are about 1e-14 of the largest |f|. About 900 flops a point and L³ for the grid.
     pub fn evaluate(&self, beta: &Coefficients) -> Vec<f64> {
-        let torus = Torus::new(beta.degree(), WIDTH, OVERSAMPLING);
+        let torus = Torus::new(beta.degree());
         let grid = torus.synthesis(beta.as_slice());
         let mut sorted = vec![0.0; self.len()];
         sorted
@@ -105,7 +102,7 @@ impl Scattered {
     /// `weights` has one entry a point.
     pub fn moments(&self, weights: &[f64], degree: usize) -> Coefficients {
         assert_eq!(self.len(), weights.len(), "one weight a point");
-        let torus = Torus::new(degree, WIDTH, OVERSAMPLING);
+        let torus = Torus::new(degree);
         let grid = self.spread(&torus, &self.sorted(weights));
         let mut out = Coefficients::zeros(degree);
         out.as_mut_slice().copy_from_slice(&torus.analysis(grid));
