@@ -10,6 +10,7 @@ mod immersion;
 pub mod io;
 pub mod mass;
 pub mod noise;
+mod normals;
 mod outliers;
 mod patch;
 pub mod point_cloud;
