@@ -15,7 +15,7 @@ use crate::quality::{LinearPieces, Quality, in_frame};
 /// Points of the surface among which the farthest from the centre is sought.
 const EXTENT_DIRECTIONS: usize = 2_000;
 /// Facets that are linearised, the weakest first.
-const FACETS: usize = 48;
+const FACETS: usize = 40;
 
 /// Q of contacts on a surface: the convention with everything the surface decides filled in.
 #[derive(Clone, Debug)]
@@ -202,7 +202,6 @@ impl<S: Surface> Quality<S> for Objective {
             let found = self.near_active_facets(&realised, band, &mut facets);
             self.contacts = realised;
             found?;
-            facets.sort_by(|a, b| a.offset.total_cmp(&b.offset));
             facets.truncate(FACETS);
         } else {
             facets.push(margin.facet);

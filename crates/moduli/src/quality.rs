@@ -24,6 +24,12 @@ impl LinearPieces {
         self.slopes.clear();
     }
 
+    /// Makes room for pieces of the present dimension.
+    pub(crate) fn reserve(&mut self, pieces: usize) {
+        self.excess.reserve(pieces);
+        self.slopes.reserve(pieces * self.dimension);
+    }
+
     /// Adds a piece: its value above that of the least one, and its slope, zeros to be filled in.
     pub fn push(&mut self, excess: f64) -> &mut [f64] {
         let start = self.slopes.len();

@@ -138,10 +138,25 @@ impl Polytope {
         best.0
     }
 
+    /// The unfinished facets up to `level`; `out` is emptied before. The nearest first in a new
+    /// polytope, where order saves work.
+    pub(crate) fn open(&self, level: f64, out: &mut Vec<u32>) {
+        out.clear();
+        let open = |f: &u32| self.is_open(*f as usize, level);
+        out.extend((0..self.keys.len() as u32).filter(open));
+        if self.moves == 1 {
+            self.sort(out);
+        }
+    }
+
     /// The facets up to `level`, the nearest first; `out` is emptied before.
     pub(crate) fn up_to(&self, level: f64, out: &mut Vec<u32>) {
         out.clear();
         out.extend((0..self.keys.len() as u32).filter(|&f| self.bound(f as usize) <= level));
+        self.sort(out);
+    }
+
+    fn sort(&self, out: &mut [u32]) {
         let key = |f: &u32| self.keys[*f as usize];
         out.sort_unstable_by(|a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
     }

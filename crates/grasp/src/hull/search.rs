@@ -132,8 +132,7 @@ impl Search {
         let mut open = std::mem::take(&mut self.open);
         let mut done = true;
         loop {
-            self.polytope.up_to(level, &mut open);
-            open.retain(|&f| self.polytope.is_open(f as usize, level));
+            self.polytope.open(level, &mut open);
             if open.is_empty() || !done {
                 break;
             }

@@ -62,6 +62,16 @@ const EQUAL: f64 = 1e-9;
 const RIDGE: f64 = 1e-12;
 
 impl Bundle {
+    /// Room for moves of this many numbers: more weights than these plus one never stay.
+    pub(super) fn reserve(&mut self, dimension: usize) {
+        let most = dimension + 8;
+        self.active.reserve(most);
+        self.target.reserve(most + 1);
+        self.system.reserve((most + 1) * (most + 2));
+        self.mixed.reserve(dimension);
+        self.moves.reserve(dimension);
+    }
+
     /// The maximiser, shortened to `reach` if it is longer. One piece or more.
     pub(super) fn solve(
         &mut self,
@@ -292,6 +302,63 @@ mod tests {
         let opposite = [(0.0, [1.0, 0.0]), (0.0, [-2.0, 0.0])];
         let (best, _) = solve(&opposite, &[], 1.0, 10.0);
         assert!(best.slope < 1e-12 && best.gain.abs() < 1e-12);
+    }
+
+    #[test]
+    fn many_pieces_and_limits_are_solved_to_rounding() {
+        // Costs of the pieces and limits that carry weight are equal, of the others higher.
+        for seed in 0..200 {
+            let number = |i: usize, k: usize| ((seed * 97 + i * 13 + k * 7 + i * k) as f64).sin();
+            let mut pieces = LinearPieces::default();
+            let mut limits = LinearPieces::default();
+            pieces.reset(3);
+            limits.reset(3);
+            for i in 0..40 {
+                let excess = if i == 0 {
+                    0.0
+                } else {
+                    0.05 * number(i, 9).abs()
+                };
+                let slope: Vec<f64> = (0..6).map(|k| number(i, k)).collect();
+                pieces.push(excess).copy_from_slice(&slope);
+                // Pieces that say the same twice.
+                if i % 5 == 0 {
+                    pieces.push(excess).copy_from_slice(&slope);
+                }
+            }
+            for i in 0..6 {
+                let slope: Vec<f64> = (0..6).map(|k| number(i + 60, k)).collect();
+                limits
+                    .push(0.01 * number(i, 3).abs())
+                    .copy_from_slice(&slope);
+            }
+            let rho = 10.0_f64.powi(seed as i32 % 7 - 4);
+            let mut bundle = Bundle::default();
+            let best = bundle.solve(&pieces, &limits, rho, f64::INFINITY);
+            let u = bundle.moves().to_vec();
+            for k in 0..limits.len() {
+                assert!(limits.at(k, &u) >= -1e-8, "seed {seed}");
+            }
+            // The dual's value is that of the move: nothing is left to gain.
+            let weighted: f64 = bundle
+                .active
+                .iter()
+                .map(|a| {
+                    a.weight
+                        * if a.limit {
+                            limits.get(a.index).0
+                        } else {
+                            pieces.get(a.index).0
+                        }
+                })
+                .sum();
+            let dual = weighted + 0.5 * rho * best.slope * best.slope;
+            let primal = best.gain - dot(&u, &u) / (2.0 * rho);
+            assert!(
+                (dual - primal).abs() <= 1e-7 * dual.abs().max(1e-3),
+                "seed {seed}: {dual} {primal}"
+            );
+        }
     }
 
     #[test]

@@ -63,8 +63,21 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
             bundle: Bundle::default(),
             slope: Vec::new(),
         };
+        climber.reserve();
         climber.linearise()?;
         Ok(climber)
+    }
+
+    /// Room for all that steps can need, so that none of them allocates.
+    fn reserve(&mut self) {
+        let contacts = self.here.len();
+        for pieces in [&mut self.pieces, &mut self.limits] {
+            pieces.reset(contacts);
+            pieces.reserve(MOST_PIECES);
+        }
+        self.walls.reserve(contacts);
+        self.bundle.reserve(2 * contacts);
+        self.slope.reserve(2 * contacts);
     }
 
     /// Climbs until no slope, no gain or no steps are left, or until `enough`; `seen` gets every
@@ -202,9 +215,11 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         if self.constraints.is_empty() {
             return Ok(true);
         }
-        match self.constraints.repair(self.surface, &self.there) {
-            Ok(inside) => self.there = inside,
-            Err(_) => return Ok(false),
+        let repaired = self
+            .constraints
+            .repair_in_place(self.surface, &mut self.there);
+        if repaired.is_err() {
+            return Ok(false);
         }
         self.constraints.closed(self.surface, &self.there)
     }

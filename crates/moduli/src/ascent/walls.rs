@@ -37,6 +37,15 @@ pub(super) enum Crossed {
 }
 
 impl Walls {
+    /// Room for the walls of some contacts.
+    pub(super) fn reserve(&mut self, contacts: usize) {
+        for pieces in [&mut self.all, &mut self.there] {
+            pieces.reset(contacts);
+            pieces.reserve(2 * contacts);
+        }
+        self.standing.reserve(2 * contacts);
+    }
+
     /// Looks at the walls around a state; those that stood stand on.
     pub(super) fn around<S>(
         &mut self,
@@ -143,5 +152,116 @@ impl Walls {
         moves.clear();
         moves.extend(slope.iter().map(|a| factor * a));
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{UnitVector3, Vector3};
+    use sph::direction::angle;
+
+    /// Q jumps where contacts cross the plane x = 0: its walls are on the sphere itself.
+    struct Plane;
+
+    impl Quality<()> for Plane {
+        fn value(&mut self, _: &(), _: &[Direction]) -> Result<f64, grasp::QualityError> {
+            Ok(0.0)
+        }
+
+        fn linearise(
+            &mut self,
+            _: &(),
+            _: &[Direction],
+            _: &mut LinearPieces,
+        ) -> Result<(), grasp::QualityError> {
+            Ok(())
+        }
+
+        fn slope(
+            &mut self,
+            _: &(),
+            _: &[Direction],
+            _: &mut [f64],
+        ) -> Result<(), grasp::QualityError> {
+            Ok(())
+        }
+
+        fn walls(
+            &mut self,
+            _: &(),
+            side: &[Direction],
+            contacts: &[Direction],
+            walls: &mut LinearPieces,
+        ) {
+            walls.reset(contacts.len());
+            for (i, (s, p)) in side.iter().zip(contacts).enumerate() {
+                let sign = s.x.signum();
+                let slope = crate::quality::in_frame(p, &(Vector3::x() * sign));
+                walls.push(sign * p.x)[2 * i..2 * i + 2].copy_from_slice(&slope);
+            }
+        }
+
+        fn evaluations(&self) -> usize {
+            0
+        }
+    }
+
+    fn at(x: f64) -> Direction {
+        UnitVector3::new_normalize(Vector3::new(x, 0.5, 0.8))
+    }
+
+    #[test]
+    fn walls_that_are_crossed_stand_until_one_is_left_behind() {
+        let mut walls = Walls::default();
+        let (here, there) = ([at(0.1), at(0.3)], [at(-0.1), at(0.2)]);
+        walls.around(&(), &mut Plane, &here);
+        let mut limits = LinearPieces::default();
+        let mut count = |walls: &Walls| {
+            limits.reset(2);
+            walls.write(&mut limits);
+            limits.len()
+        };
+        assert_eq!(count(&walls), 0);
+        assert_eq!(walls.raise(&(), &mut Plane, &here, &there), Crossed::New);
+        assert_eq!(
+            walls.raise(&(), &mut Plane, &here, &there),
+            Crossed::Standing
+        );
+        assert_eq!(walls.raise(&(), &mut Plane, &here, &here), Crossed::Nothing);
+        assert_eq!(count(&walls), 1);
+        walls.leave(&(), &mut Plane, &here, &here);
+        assert_eq!(count(&walls), 1);
+        walls.leave(&(), &mut Plane, &here, &there);
+        assert_eq!(count(&walls), 0);
+    }
+
+    #[test]
+    fn standing_walls_are_kept_whatever_the_curvature() {
+        let mut walls = Walls::default();
+        let here = [at(0.1)];
+        walls.around(&(), &mut Plane, &here);
+        let mut there = [at(-0.4)];
+        walls.keep(&(), &mut Plane, &here, &mut there);
+        assert!(there[0].x < 0.0, "no wall stands yet");
+        walls.raise(&(), &mut Plane, &here, &there);
+        walls.keep(&(), &mut Plane, &here, &mut there);
+        assert!(there[0].x >= 0.0 && there[0].x <= 0.05, "{}", there[0].x);
+    }
+
+    #[test]
+    fn only_near_walls_are_stepped_over() {
+        let mut walls = Walls::default();
+        let mut moves = Vec::new();
+        for x in [0.02, 0.2] {
+            let here = [at(x)];
+            walls.around(&(), &mut Plane, &here);
+            let near = walls.step_over(0, &mut moves);
+            assert_eq!(near, x < 0.1);
+            if near {
+                let there = moved(&here[0], &moves);
+                assert!(there.x < 0.0 && angle(&here[0], &there) <= FAR + BEYOND);
+            }
+        }
     }
 }
