@@ -57,6 +57,7 @@ pub(crate) fn candidates(synthesis: &Synthesis, count: usize) -> Vec<Candidate> 
             contacts: grasp.contacts.clone(),
             quality: grasp.quality,
             source: Source::Synthesis,
+            carried: None,
             hand: Some(HandPlacement {
                 object_from_palm: grasp.object_from_palm,
                 joints: grasp.joints.clone(),
