@@ -49,6 +49,8 @@ pub(crate) struct Candidate {
     pub(crate) quality: f64,
     pub(crate) source: Source,
     pub(crate) hand: Option<HandPlacement>,
+    /// For transfers, what they came with.
+    pub(crate) carried: Option<transfer::Carried>,
 }
 
 /// Where a candidate comes from.

@@ -69,6 +69,7 @@ pub(crate) fn candidates(synthesis: &Synthesis, count: usize) -> Vec<Candidate> 
             source: Source::Synthesis {
                 preshape: grasp.preshape,
             },
+            carried: None,
             hand: Some(HandPlacement {
                 object_from_palm: grasp.object_from_palm,
                 joints: grasp.joints.clone(),
