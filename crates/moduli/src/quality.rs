@@ -93,6 +93,23 @@ pub trait Quality<S> {
         slope: &mut [f64],
     ) -> Result<(), QualityError>;
 
+    /// Where the quality jumps: the walls around the side on which `side` is, as functions of the moves
+    /// from `contacts`, positive on that side, linearised. `walls` is emptied before; their number and
+    /// order depend on nothing but the side. None by default.
+    fn walls(
+        &mut self,
+        surface: &S,
+        side: &[Direction],
+        contacts: &[Direction],
+        walls: &mut LinearPieces,
+    ) {
+        let _ = (surface, side);
+        walls.reset(contacts.len());
+    }
+
+    /// Forgets what earlier values left behind: what follows depends on nothing but its arguments.
+    fn forget(&mut self) {}
+
     /// Values computed so far.
     fn evaluations(&self) -> usize;
 }

@@ -3,6 +3,7 @@
 //! Surfaces live in a centred frame, whose origin is the mean of the cloud (Sec. IV-A of the
 //! paper); [`fit::Fit`] keeps the way back to the frame of the cloud.
 
+mod cells;
 pub mod embedding;
 pub mod fit;
 mod immersion;
@@ -10,6 +11,7 @@ pub mod io;
 pub mod mass;
 pub mod noise;
 mod outliers;
+mod patch;
 pub mod point_cloud;
 pub mod radial;
 mod radial_field;
@@ -21,6 +23,7 @@ pub mod star;
 pub mod surface;
 pub mod triangle_mesh;
 mod unseen;
+pub mod vessel;
 
 pub use fit::{Fit, FitError, FitSettings};
 pub use immersion::{Immersion, SphericalError};
@@ -32,3 +35,4 @@ pub use spherical_fit::{SphericalFit, SphericalFitError, fit_spherical};
 pub use star::{Crossing, StarShape, star_shape};
 pub use surface::{Differential, Surface};
 pub use triangle_mesh::TriangleMesh;
+pub use vessel::{Opening, Vessel};

@@ -9,6 +9,7 @@ use pulp::{Arch, Simd, WithSimd};
 use crate::basis::Jet;
 use crate::coefficients::Coefficients;
 use crate::direction::Direction;
+use crate::fused::multiply_add;
 use crate::kernel::TAPS;
 use crate::rotation::{cyclic, rotate};
 use crate::torus::{Torus, TorusGrid};
@@ -208,16 +209,16 @@ impl WithSimd for Read<'_> {
         let row = self.theta as usize;
         // Rounding may bring φ to one whole turn.
         let column = (self.phi as usize).min(self.torus.steps() - 1);
-        let along_theta = kernel.jets(self.theta - row as f64 - 0.5);
-        let along_phi = kernel.jets(self.phi - column as f64 - 0.5);
+        let along_theta = kernel.derivatives::<S, 3>(self.theta - row as f64 - 0.5);
+        let along_phi = kernel.derivatives::<S, 3>(self.phi - column as f64 - 0.5);
         let mut sums = [[0.0; TAPS]; 3];
-        for tap in 0..kernel.width() {
+        for tap in kernel.support() {
             let at = (row + tap) * stride + column;
             let values = &self.grid[at..at + TAPS];
             for k in 0..TAPS {
-                sums[0][k] += along_theta[0][tap] * values[k];
-                sums[1][k] += along_theta[1][tap] * values[k];
-                sums[2][k] += along_theta[2][tap] * values[k];
+                sums[0][k] = multiply_add::<S>(along_theta[0][tap], values[k], sums[0][k]);
+                sums[1][k] = multiply_add::<S>(along_theta[1][tap], values[k], sums[1][k]);
+                sums[2][k] = multiply_add::<S>(along_theta[2][tap], values[k], sums[2][k]);
             }
         }
         let mut out = [0.0; 6];

@@ -5,20 +5,31 @@
 //! the position, so it is tabulated as a polynomial. (Barnett, Magland and af Klinteberg 2019
 //! compare such windows; this one's derivatives stay finite at its ends.)
 
-/// Taps kept in registers; narrower windows are filled with zeros.
+use pulp::Simd;
+
+use crate::fused::multiply_add;
+
+/// Taps kept in registers; narrower windows stand in the middle, with zeros on both sides.
 pub(crate) const TAPS: usize = 16;
+
+/// Steps from the first tap's grid point to the one at or below the position.
+pub(crate) const REACH: usize = TAPS / 2 - 1;
 
 /// One weight a tap.
 pub(crate) type Taps = [f64; TAPS];
+
+/// The first half of the taps; the second is its mirror image.
+type Half = [f64; TAPS / 2];
 
 /// A window of even width.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
     width: usize,
     beta: f64,
-    /// Coefficients of u^d of every tap, the highest power first: of φ, φ′ and φ″. The derivatives
-    /// have tables of their own, since differentiating a table loses digits.
-    powers: Vec<[Taps; 3]>,
+    /// Coefficients of u^{2d} and of u^{2d+1} of the first half of the taps, the highest d first: of
+    /// φ, φ′ and φ″. The derivatives have tables of their own, since differentiating a table loses
+    /// digits.
+    powers: Vec<[[Half; 2]; 3]>,
 }
 
 impl Kernel {
@@ -27,19 +38,21 @@ impl Kernel {
     pub(crate) fn new(width: usize, oversampling: f64) -> Self {
         debug_assert!(width.is_multiple_of(2) && width <= TAPS);
         let beta = std::f64::consts::PI * width as f64 * (1.0 - 0.5 / oversampling);
-        let degree = width + 4;
-        let mut powers = vec![[[0.0; TAPS]; 3]; degree + 1];
-        let cosines = cosines(degree + 1);
-        for tap in 0..width {
+        let pairs = width / 2 + 2;
+        let nodes = 2 * pairs;
+        let mut powers = vec![[[[0.0; TAPS / 2]; 2]; 3]; pairs];
+        let cosines = cosines(nodes);
+        for tap in 0..width / 2 {
             let centre = 0.5 * (width as f64 - 1.0) - tap as f64;
             // Chebyshev points of [−½, ½].
-            let jets: Vec<[f64; 3]> = (0..=degree)
+            let jets: Vec<[f64; 3]> = (0..nodes)
                 .map(|i| window_jet(beta, width, 0.5 * cosines[2 * i + 1] + centre))
                 .collect();
+            let slot = (TAPS - width) / 2 + tap;
             for part in 0..3 {
                 let values: Vec<f64> = jets.iter().map(|jet| jet[part]).collect();
                 for (d, c) in monomials(&values, &cosines).into_iter().enumerate() {
-                    powers[degree - d][part][tap] = c;
+                    powers[pairs - 1 - d / 2][part][d % 2][slot] = c;
                 }
             }
         }
@@ -50,40 +63,47 @@ impl Kernel {
         }
     }
 
-    /// Number of taps.
+    /// Number of taps that are not zero.
     pub(crate) fn width(&self) -> usize {
         self.width
     }
 
-    /// Steps from the first tap's grid point to the one at or below the position.
-    pub(crate) fn reach(&self) -> usize {
-        self.width / 2 - 1
+    /// The taps that are not zero.
+    #[inline(always)]
+    pub(crate) fn support(&self) -> std::ops::Range<usize> {
+        (TAPS - self.width) / 2..(TAPS + self.width) / 2
     }
 
     /// φ at the taps' distances; u ∈ [−½, ½] is the position past the grid point, less ½.
     #[inline(always)]
-    pub(crate) fn weights(&self, u: f64) -> Taps {
-        let mut sum = self.powers[0][0];
-        for power in &self.powers[1..] {
-            for k in 0..TAPS {
-                sum[k] = sum[k] * u + power[0][k];
-            }
-        }
-        sum
+    pub(crate) fn weights<S: Simd>(&self, u: f64) -> Taps {
+        let [weights] = self.derivatives::<S, 1>(u);
+        weights
     }
 
-    /// φ, φ′ and φ″ at the taps' distances, per grid step.
+    /// φ and its first derivatives, `PARTS` of φ, φ′, φ″, at the taps' distances, per grid step.
     #[inline(always)]
-    pub(crate) fn jets(&self, u: f64) -> [Taps; 3] {
-        let mut sums = self.powers[0];
-        for power in &self.powers[1..] {
-            for part in 0..3 {
-                for k in 0..TAPS {
-                    sums[part][k] = sums[part][k] * u + power[part][k];
+    pub(crate) fn derivatives<S: Simd, const PARTS: usize>(&self, u: f64) -> [Taps; PARTS] {
+        let square = u * u;
+        let mut sums = [[[0.0; TAPS / 2]; 2]; PARTS];
+        for power in &self.powers {
+            for (sum, power) in sums.iter_mut().zip(power) {
+                for k in 0..TAPS / 2 {
+                    sum[0][k] = multiply_add::<S>(sum[0][k], square, power[0][k]);
+                    sum[1][k] = multiply_add::<S>(sum[1][k], square, power[1][k]);
                 }
             }
         }
-        sums
+        // φ(−d) = φ(d): the mirrored tap at u is the tap at −u; derivatives change sign in turn.
+        let mut out = [[0.0; TAPS]; PARTS];
+        for (part, (out, [even, odd])) in out.iter_mut().zip(&sums).enumerate() {
+            let sign = if part % 2 == 0 { 1.0 } else { -1.0 };
+            for k in 0..TAPS / 2 {
+                out[k] = multiply_add::<S>(odd[k], u, even[k]);
+                out[TAPS - 1 - k] = sign * multiply_add::<S>(-odd[k], u, even[k]);
+            }
+        }
+        out
     }
 
     /// ∫ φ(d) e^{−2πiξd} dd at ξ cycles a grid step, |ξ| below 1 − 1/2σ.
@@ -171,6 +191,8 @@ fn monomials(values: &[f64], cosines: &[f64]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use pulp::Scalar;
+
     use super::*;
 
     #[test]
@@ -179,18 +201,20 @@ mod tests {
             let kernel = Kernel::new(width, 2.0);
             for i in 0..=40 {
                 let u = f64::from(i) / 40.0 - 0.5;
-                let (taps, jets) = (kernel.weights(u), kernel.jets(u));
-                for (tap, weight) in taps.iter().enumerate().take(width) {
-                    let d = u + 0.5 * (width as f64 - 1.0) - tap as f64;
+                let taps = kernel.weights::<Scalar>(u);
+                let jets = kernel.derivatives::<Scalar, 3>(u);
+                for tap in kernel.support() {
+                    let d = u + 0.5 * (TAPS as f64 - 1.0) - tap as f64;
                     let exact = window_jet(kernel.beta, width, d);
                     let allowed = 3e-14 + 10.0_f64.powi(-(width as i32));
-                    assert!((weight - exact[0]).abs() <= allowed, "width {width}");
+                    assert!((taps[tap] - exact[0]).abs() <= allowed, "width {width}");
                     for part in 0..3 {
                         let error = (jets[part][tap] - exact[part]).abs();
                         assert!(error <= 10.0 * allowed, "width {width} part {part}");
                     }
                 }
-                assert!(taps[width..].iter().all(|&w| w == 0.0));
+                let outside = (0..TAPS).filter(|tap| !kernel.support().contains(tap));
+                assert!(outside.map(|tap| taps[tap]).all(|w| w == 0.0));
                 assert_eq!(jets[0], taps);
             }
         }
@@ -217,12 +241,11 @@ mod tests {
                 for u in [-0.5, -0.2, 0.4] {
                     let turn = std::f64::consts::TAU * mode;
                     let sum: f64 = kernel
-                        .weights(u)
+                        .weights::<Scalar>(u)
                         .iter()
-                        .take(width)
                         .enumerate()
                         .map(|(tap, w)| {
-                            let d = u + 0.5 * (width as f64 - 1.0) - tap as f64;
+                            let d = u + 0.5 * (TAPS as f64 - 1.0) - tap as f64;
                             w * (turn * d).cos()
                         })
                         .sum();

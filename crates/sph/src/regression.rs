@@ -3,6 +3,7 @@
 mod conjugate;
 mod dense;
 pub mod gram;
+mod lanczos;
 mod likelihood;
 mod operator;
 pub mod penalty;
