@@ -111,7 +111,7 @@ mod tests {
         for name in [
             "../../secret.stl",
             "package://../secret.stl",
-            "package://robot/../../secret.stl",
+            "package://robot/../secret.stl",
             absolute,
             &format!("file://{absolute}"),
         ] {
