@@ -14,13 +14,16 @@ pub(crate) struct Stopping {
 
 /// Minimises ½|f(x)|² from `x` (Levenberg–Marquardt, forward differences); `project` puts
 /// a point back within its limits. Returns the cost; deterministic.
+///
+/// For the slopes `residuals` is given those of a point next by as well: entries that vanish
+/// there may be left at 0, which saves the work of terms that are idle.
 pub(crate) fn minimise(
     x: &mut DVector<f64>,
     stopping: Stopping,
-    residuals: impl Fn(&DVector<f64>) -> DVector<f64>,
+    residuals: impl Fn(&DVector<f64>, Option<&DVector<f64>>) -> DVector<f64>,
     project: impl Fn(&mut DVector<f64>),
 ) -> f64 {
-    let mut at = residuals(x);
+    let mut at = residuals(x, None);
     let mut cost = 0.5 * at.norm_squared();
     let mut damping = 1e-2;
     for _ in 0..stopping.iterations {
@@ -35,7 +38,7 @@ pub(crate) fn minimise(
             if let Some(step) = damped_step(&curvature, &gradient, damping) {
                 let mut next = &*x - step;
                 project(&mut next);
-                let found = residuals(&next);
+                let found = residuals(&next, None);
                 let next_cost = 0.5 * found.norm_squared();
                 if next_cost < cost {
                     lowered = cost - next_cost > stopping.decrease * cost;
@@ -58,14 +61,14 @@ pub(crate) fn minimise(
 fn jacobian(
     x: &DVector<f64>,
     at: &DVector<f64>,
-    residuals: &impl Fn(&DVector<f64>) -> DVector<f64>,
+    residuals: &impl Fn(&DVector<f64>, Option<&DVector<f64>>) -> DVector<f64>,
 ) -> DMatrix<f64> {
     const STEP: f64 = 1e-6;
     let mut slope = DMatrix::zeros(at.len(), x.len());
     let mut moved = x.clone();
     for k in 0..x.len() {
         moved[k] += STEP;
-        slope.set_column(k, &((residuals(&moved) - at) / STEP));
+        slope.set_column(k, &((residuals(&moved, Some(at)) - at) / STEP));
         moved[k] = x[k];
     }
     slope
@@ -91,8 +94,9 @@ mod tests {
 
     #[test]
     fn finds_the_bottom_of_a_curved_valley_and_respects_limits() {
-        let valley =
-            |x: &DVector<f64>| DVector::from_vec(vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]]);
+        let valley = |x: &DVector<f64>, _: Option<&DVector<f64>>| {
+            DVector::from_vec(vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]])
+        };
         let stopping = Stopping {
             iterations: 200,
             cost: 1e-20,

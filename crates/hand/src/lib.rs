@@ -5,6 +5,7 @@
 //! and ranks the grasps (paper, Sec. IV-C). The palm frame is the root link's; lengths
 //! in metres, angles in radians.
 
+mod alignment;
 mod check;
 mod closing;
 mod collision;
@@ -21,6 +22,7 @@ mod sdh;
 mod synthesis;
 mod urdf;
 
+pub use alignment::carried_pose;
 pub use check::{Finding, Severity, check_hand, hand_meshes};
 pub use closing::{ClosedHand, ClosingRules, Rejection, close_hand};
 pub use collision::{CollisionObject, Gap, GeometryError, ObjectError, Precision};
@@ -31,7 +33,10 @@ pub use kinematics::KinematicsError;
 pub use mesh_file::{MeshFileError, mesh_vertices};
 pub use model::{Drive, Geometry, HandModel, Joint, JointKind, Link, LinkGeometry};
 pub use pose_sampling::{HandPose, PoseSampling, aimed};
-pub use reach::{ReachOutcome, ReachParams, Reached, reach_contacts};
+pub use reach::{
+    HandState, ImproveParams, Improvement, ReachOutcome, ReachParams, Reached, Reacher,
+    reach_contacts,
+};
 pub use sdh::{LoadError, SDH_SPEC, SDH_URDF, schunk_sdh};
 pub use synthesis::{
     HandGrasp, Outcome, OutcomeCounts, Synthesis, SynthesisError, SynthesisParams, collect,

@@ -1,7 +1,7 @@
 //! The library of known objects: fitted shapes with their best grasps.
 
 use hand::HandGrasp;
-use nalgebra::Vector3;
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 use sph::Direction;
 
@@ -64,6 +64,16 @@ impl LibraryGrasp {
             palm_quaternion_xyzw: pose.rotation.coords.into(),
             joints_rad: grasp.joints.clone(),
         }
+    }
+
+    /// Pose of the palm in the centred object frame; the identity turn for a quaternion of zeros.
+    pub fn object_from_palm(&self) -> Isometry3<f64> {
+        let [x, y, z, w] = self.palm_quaternion_xyzw;
+        let turn = UnitQuaternion::try_new(Quaternion::new(w, x, y, z), 1e-9);
+        Isometry3::from_parts(
+            Translation3::from(Vector3::from(self.palm_translation_m)),
+            turn.unwrap_or_else(UnitQuaternion::identity),
+        )
     }
 
     /// The contacts' directions; `None` when a stored vector is not of unit length to 1e-6.

@@ -55,9 +55,8 @@ pub(crate) struct NormalField {
 impl NormalField {
     /// Good to about 1e-10 of the largest normal.
     pub(crate) fn new(coordinates: &[Coefficients; 3]) -> Self {
-        const TOLERANCE: f64 = 1e-12;
         Self {
-            coordinates: coordinates.each_ref().map(|c| Field::new(c, TOLERANCE)),
+            coordinates: coordinates.each_ref().map(Field::new),
         }
     }
 

@@ -1,11 +1,12 @@
 //! Candidates carried over from the nearest library objects.
 
+use hand::{HandState, carried_pose};
 use indicatif::ProgressBar;
 use moduli::Continuation;
 use moduli::point::contacts_on;
 use moduli::transfer::Transfer;
 use rayon::prelude::*;
-use record::{LibraryEntry, LibraryRecord};
+use record::{LibraryEntry, LibraryGrasp, LibraryRecord};
 use shape::RadialField;
 use sph::Direction;
 
@@ -18,6 +19,15 @@ pub(crate) struct Neighbour<'a> {
     /// Metres.
     pub(crate) distance: f64,
     surface: RadialField,
+}
+
+/// What a transferred grasp brings along.
+#[derive(Clone, Debug)]
+pub(crate) struct Carried {
+    /// The hand on the library object, moved rigidly with its contacts.
+    pub(crate) hand: HandState,
+    /// Quality on the target of the same directions, not improved.
+    pub(crate) naive: f64,
 }
 
 /// The library objects nearest to the target by d (Sec. III-A), the nearest first.
@@ -68,13 +78,13 @@ pub(crate) fn candidates(
                     neighbour.entry.id
                 ))
             })?;
-            jobs.push((neighbour, directions, grasp.quality));
+            jobs.push((neighbour, grasp, directions));
         }
     }
     progress.set_length(jobs.len() as u64);
     jobs.into_par_iter()
-        .map(|(neighbour, directions, source_quality)| {
-            let candidate = carry(target, &surface, neighbour, &directions, source_quality)?;
+        .map(|(neighbour, grasp, directions)| {
+            let candidate = carry(target, &surface, neighbour, grasp, &directions)?;
             progress.inc(1);
             Ok(candidate)
         })
@@ -85,8 +95,8 @@ fn carry(
     target: &Target,
     surface: &RadialField,
     neighbour: &Neighbour,
+    grasp: &LibraryGrasp,
     directions: &[Direction],
-    source_quality: f64,
 ) -> Result<Candidate, Failure> {
     let failed = |e: moduli::TransferError| {
         Failure::refused(format!("transfer from {}: {e}", neighbour.entry.id))
@@ -102,14 +112,22 @@ fn carry(
     let arrived = scheme
         .carry(&transfer, &stations, directions, |_, _| {})
         .map_err(failed)?;
+    let naive = transfer.naive(directions).map_err(failed)?.quality;
+    let contacts = contacts_on(surface, &arrived.contacts);
+    let held = contacts_on(&neighbour.surface, directions);
+    let hand = HandState {
+        object_from_palm: carried_pose(&grasp.object_from_palm(), &held, &contacts),
+        joints: grasp.joints_rad.clone(),
+    };
     Ok(Candidate {
-        contacts: contacts_on(surface, &arrived.contacts),
+        contacts,
         quality: arrived.quality,
         source: Source::Transfer {
             from: format!("{} {}", neighbour.entry.id, neighbour.entry.name),
             shape_distance: neighbour.distance,
-            source_quality,
+            source_quality: grasp.quality,
         },
         hand: None,
+        carried: Some(Carried { hand, naive }),
     })
 }

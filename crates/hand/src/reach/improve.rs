@@ -1,0 +1,175 @@
+//! The best grasp near wanted contacts that a hand can really make.
+//!
+//! Where no hand brings its tips to the contacts (a valley narrower than a tip, a span wider
+//! than the hand), the contacts that it does make are a grasp too, and a worse one. From there
+//! the quality is climbed among the contacts that the hand makes: every trial asks for contacts a
+//! little aside, moves the hand after them, closes it by the rules and measures what it holds.
+
+use grasp::{Contact, Convention, Grasp, QualityError, epsilon_quality};
+use nalgebra::{DVector, Point3};
+use rand::{Rng, RngExt};
+use shape::Surface;
+use sph::Direction;
+use sph::direction::{log, retract, tangent_frame};
+
+use super::problem::{Task, state};
+use super::{ReachParams, Reached, Reacher};
+
+/// How a hand's grasp is improved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImproveParams {
+    /// Number of closings tried.
+    pub trials: usize,
+    /// First move of the contacts, metres; it grows with success and shrinks without.
+    pub spread: f64,
+    /// How quality is measured.
+    pub convention: Convention,
+    /// The point about which torques are taken, object frame, metres.
+    pub centre: Point3<f64>,
+}
+
+/// A grasp that the hand makes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Improvement {
+    /// The hand and the contacts it makes; the errors are distances from the wanted contacts.
+    pub reached: Reached,
+    /// Quality of the contacts that the hand makes.
+    pub quality: f64,
+    /// The same before anything was improved.
+    pub start_quality: f64,
+}
+
+/// Where the search stands.
+struct Standing {
+    x: DVector<f64>,
+    hand: Reached,
+    quality: f64,
+}
+
+impl Reacher<'_> {
+    /// Climbs the quality from a hand that is near the wanted contacts, among hands that keep
+    /// every rule; never below the start. The same generator state gives the same result.
+    ///
+    /// Errors: a convention that cannot be used. Cost: about two milliseconds a trial.
+    pub fn improve<R: Rng + ?Sized>(
+        &self,
+        wanted: &[Contact],
+        near: Reached,
+        reach: &ReachParams,
+        params: &ImproveParams,
+        rng: &mut R,
+    ) -> Result<Improvement, QualityError> {
+        let measure = |contacts: &[Contact]| {
+            let grasp = Grasp {
+                contacts: contacts.to_vec(),
+                centre: params.centre,
+            };
+            epsilon_quality(&grasp, &params.convention)
+        };
+        let start_quality = measure(&near.contacts)?;
+        let targets: Vec<_> = wanted
+            .iter()
+            .filter_map(|c| Direction::try_new(c.position.coords, 0.0))
+            .collect();
+        let mut best = Standing {
+            x: state(&near.object_from_palm, &near.joints),
+            hand: near,
+            quality: start_quality,
+        };
+        let mut spread = params.spread;
+        let mut way: Option<Vec<Direction>> = None;
+        for trial in 0..params.trials {
+            let aims = match way.take() {
+                // What has just helped may help again.
+                Some(ahead) => ahead,
+                None if trial < 3 => {
+                    towards(&best.hand.directions, &targets, 0.5_f64.powi(trial as i32))
+                }
+                None => self.aside(&best.hand.directions, spread, rng),
+            };
+            let found = self.trial(&best, &aims, reach, measure)?;
+            match found {
+                Some(next) if next.quality > best.quality => {
+                    spread = (1.6 * spread).min(4.0 * params.spread);
+                    way = Some(ahead(&best.hand.directions, &next.hand.directions));
+                    best = next;
+                }
+                _ => spread = (0.88 * spread).max(0.02 * params.spread),
+            }
+        }
+        let mut reached = best.hand;
+        reached.measure_errors(wanted);
+        Ok(Improvement {
+            reached,
+            quality: best.quality,
+            start_quality,
+        })
+    }
+
+    /// Moves the hand after contacts at `aims` and closes it; none where a rule is broken.
+    fn trial(
+        &self,
+        from: &Standing,
+        aims: &[Direction],
+        reach: &ReachParams,
+        measure: impl Fn(&[Contact]) -> Result<f64, QualityError>,
+    ) -> Result<Option<Standing>, QualityError> {
+        let wanted: Vec<_> = aims
+            .iter()
+            .map(|p| {
+                let (position, inward_normal) = self.problem.object.surface().contact(p);
+                Contact {
+                    position,
+                    inward_normal,
+                }
+            })
+            .collect();
+        let fingers = from.hand.finger_of_contact.clone();
+        let task = Task {
+            wanted: &wanted,
+            fingers: &fingers,
+            params: reach,
+        };
+        let mut x = from.x.clone();
+        self.problem.settle(&mut x, &task);
+        let Some(hand) = self.problem.close(&x, &task, from.hand.starts) else {
+            return Ok(None);
+        };
+        let quality = measure(&hand.contacts)?;
+        Ok(Some(Standing { x, hand, quality }))
+    }
+
+    /// Every contact moved at random by about `spread` metres.
+    fn aside<R: Rng + ?Sized>(
+        &self,
+        contacts: &[Direction],
+        spread: f64,
+        rng: &mut R,
+    ) -> Vec<Direction> {
+        let surface = self.problem.object.surface();
+        contacts
+            .iter()
+            .map(|p| {
+                let angle = spread / surface.radius(p);
+                let (a, b) = tangent_frame(p);
+                let mut draw = || angle * rng.random_range(-1.0..1.0);
+                let way = a * draw() + b * draw();
+                retract(p, &way)
+            })
+            .collect()
+    }
+}
+
+/// From contacts a share of the way to others.
+fn towards(from: &[Direction], to: &[Direction], share: f64) -> Vec<Direction> {
+    let pairs = from.iter().zip(to);
+    pairs
+        .map(|(p, q)| retract(p, &(log(p, q) * share)))
+        .collect()
+}
+
+/// As far beyond the second contacts as they are beyond the first.
+fn ahead(from: &[Direction], to: &[Direction]) -> Vec<Direction> {
+    let pairs = from.iter().zip(to);
+    pairs.map(|(p, q)| retract(q, &-log(q, p))).collect()
+}
