@@ -5,7 +5,7 @@ use std::path::Path;
 use grasp::{Convention, Edges, TorqueLength};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use record::ShapeRecord;
+use record::{EnvelopeError, GraspsFile, ShapeRecord};
 use shape::io::{Loaded, Warning};
 use shape::{Fit, FitError, FitSettings, PointCloud};
 
@@ -74,7 +74,23 @@ pub(crate) fn fit(cloud: &PointCloud, name: &str, options: &CloudOptions) -> Res
 
 /// A shape file.
 pub(crate) fn shape_record(path: &Path) -> Result<ShapeRecord, Failure> {
-    ShapeRecord::from_bytes(&read(path)?).map_err(|e| Failure::input(path, e))
+    ShapeRecord::from_bytes(&read(path)?).map_err(|e| {
+        let hint = match e {
+            EnvelopeError::Magic => "; `moduli fit` makes shapes from clouds and meshes",
+            _ => "",
+        };
+        Failure::input(path, format!("{e}{hint}"))
+    })
+}
+
+/// A grasps.json.
+pub(crate) fn grasps(path: &Path) -> Result<GraspsFile, Failure> {
+    GraspsFile::from_json(&read(path)?).map_err(|e| Failure::input(path, e))
+}
+
+/// The convention of the paper.
+pub(crate) fn paper_convention() -> Result<Convention, Failure> {
+    Convention::named("paper").map_err(|e| Failure::other(e.to_string()))
 }
 
 /// The convention that the options name and change.

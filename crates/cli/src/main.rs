@@ -2,8 +2,12 @@
 
 mod args;
 mod commands;
+mod delivery;
 mod failure;
+mod hands;
 mod input;
+mod limits;
+mod mesh_folders;
 mod numpy;
 mod output;
 mod placed;
@@ -13,7 +17,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::args::{Arguments, Command};
+use crate::args::{Arguments, Command, HandCommand};
 use crate::failure::Failure;
 
 fn main() -> ExitCode {
@@ -41,6 +45,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Quality(options) => commands::quality::run(options, common),
         Command::Ascend(options) => commands::ascend::run(options, common),
         Command::Transfer(options) => commands::transfer::run(options, common),
+        Command::Synthesize(options) => commands::synthesize::run(options, common),
+        Command::Hand(HandCommand::Check(options)) => commands::hand_check::run(options, common),
         Command::Grasp(options) => commands::grasp::run(options, common),
         Command::Info(options) => commands::info::run(options),
     }

@@ -1,8 +1,6 @@
 //! Where words and files leave the program.
 
-#![allow(clippy::print_stdout, clippy::print_stderr)]
-
-use std::io::IsTerminal;
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -11,26 +9,47 @@ use serde::Serialize;
 use crate::failure::Failure;
 
 /// A line of the result.
+///
+/// A reader that has seen enough (`moduli … | head`) stops nothing: the files are still to be
+/// written. Where the line cannot be written for another reason, the program ends.
 pub(crate) fn say(line: impl AsRef<str>) {
-    println!("{}", line.as_ref());
+    match writeln!(std::io::stdout().lock(), "{}", line.as_ref()) {
+        Ok(()) => {}
+        Err(e) if e.kind() == ErrorKind::BrokenPipe => {}
+        Err(e) => {
+            tell(&format!("error: cannot write the result: {e}"));
+            std::process::exit(1);
+        }
+    }
+}
+
+/// A line on standard error, which may be closed.
+fn tell(line: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
 /// A result as one line of JSON.
 pub(crate) fn say_json(value: &impl Serialize) -> Result<(), Failure> {
     let line = serde_json::to_string(value)
         .map_err(|e| Failure::other(format!("cannot write the result as JSON: {e}")))?;
-    println!("{line}");
+    say(line);
     Ok(())
+}
+
+/// The text of a JSON file.
+pub(crate) fn encode(value: &impl Serialize) -> Result<Vec<u8>, Failure> {
+    serde_json::to_vec_pretty(value)
+        .map_err(|e| Failure::other(format!("cannot encode the result as JSON: {e}")))
 }
 
 /// Something the user should know, that stops nothing.
 pub(crate) fn warn(line: impl AsRef<str>) {
-    eprintln!("warning: {}", line.as_ref());
+    tell(&format!("warning: {}", line.as_ref()));
 }
 
 /// The last words of a program that failed.
 pub(crate) fn report_failure(failure: &Failure) {
-    eprintln!("error: {}", failure.message);
+    tell(&format!("error: {}", failure.message));
 }
 
 /// A bar on a terminal, nothing elsewhere.

@@ -1,30 +1,44 @@
 //! The main job: candidates by transfer and by synthesis, ranked.
 
+pub(crate) mod fitted;
 pub(crate) mod library;
 pub(crate) mod page;
 pub(crate) mod ranking;
 pub(crate) mod reach;
+pub(crate) mod result;
 pub(crate) mod synthesis;
 pub(crate) mod transfer;
 
 use grasp::{Contact, Convention};
+use moduli::Objective;
 use nalgebra::{Isometry3, Point3};
-use shape::Fit;
+
+pub(crate) use fitted::Fitted;
 
 /// The object that is grasped, and how quality is measured on it.
 pub(crate) struct Target<'a> {
     pub(crate) name: &'a str,
-    pub(crate) fit: &'a Fit,
+    pub(crate) fit: &'a Fitted,
     /// With everything that the surface decides filled in.
     pub(crate) convention: Convention,
     /// The point about which torques are taken, centred frame.
     pub(crate) centre: Point3<f64>,
 }
 
-impl Target<'_> {
+impl<'a> Target<'a> {
+    pub(crate) fn new(name: &'a str, fit: &'a Fitted, convention: &Convention) -> Self {
+        let objective = Objective::new(convention, &fit.shape, &fit.object_origin());
+        Self {
+            name,
+            fit,
+            convention: objective.convention().clone(),
+            centre: objective.centre(),
+        }
+    }
+
     /// Origin of the user's frame in the centred frame.
     pub(crate) fn object_origin(&self) -> Point3<f64> {
-        Point3::from(-self.fit.centre_in_cloud.coords)
+        self.fit.object_origin()
     }
 }
 
@@ -50,7 +64,10 @@ pub(crate) enum Source {
         /// Quality on the library object.
         source_quality: f64,
     },
-    Synthesis,
+    Synthesis {
+        /// Index of the hand's pre-shape from which the fingers closed.
+        preshape: usize,
+    },
 }
 
 /// A hand at a grasp, centred frame.

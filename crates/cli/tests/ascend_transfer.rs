@@ -141,10 +141,10 @@ fn limits_of_an_ascent_are_kept_or_refused() {
             "held.json",
             "--allow",
             "0,0,1,100",
-            "--least-separation",
-            "0.03",
+            "--separation",
+            "30",
             "--reach",
-            "0.065",
+            "65",
         ],
     ));
     let held = read(here, "held.json");
@@ -163,14 +163,14 @@ fn limits_of_an_ascent_are_kept_or_refused() {
         moduli(here, &arguments)
     };
     refused(
-        &with(&["--least-separation", "0.5"]),
+        &with(&["--separation", "500"]),
         4,
         &["grasp 0", "least separation"],
     );
-    refused(&with(&["--reach", "-1"]), 2, &["reach", "-1"]);
+    refused(&with(&["--reach", "-1"]), 2, &["--reach -1", "millimetres"]);
     refused(&with(&["--allow", "0,0,1"]), 2, &["--allow 0,0,1"]);
     refused(
-        &with(&["--scheme", "paper", "--reach", "0.1"]),
+        &with(&["--scheme", "paper", "--reach", "100"]),
         2,
         &["--scheme ours"],
     );

@@ -16,6 +16,9 @@ pub struct Args {
     /// (metres)
     #[arg(long, value_name = "builtin|FOLDER", default_value = "builtin", value_parser = object_source)]
     pub objects: ObjectSource,
+    /// Use these objects alone, by id: S1 to S12, or names of files without .ply
+    #[arg(long, value_name = "ID", value_delimiter = ',')]
+    pub only: Vec<String>,
     /// How much to compute: a few seconds' worth, or all that the paper did
     #[arg(long, value_enum, default_value = "small")]
     pub scale: Scale,
@@ -86,6 +89,7 @@ mod tests {
         assert_eq!(args.convention.name, "paper");
         assert_eq!((args.degree, args.lambda), (crate::paper::DEGREE, None));
         assert_eq!((args.threads, args.quiet), (None, false));
+        assert!(args.only.is_empty());
     }
 
     #[test]
@@ -93,6 +97,8 @@ mod tests {
         let args = read(&[
             "--objects",
             "scans",
+            "--only",
+            "cup,can",
             "--scale",
             "full",
             "--seed",
@@ -107,6 +113,7 @@ mod tests {
         ])
         .unwrap();
         assert_eq!(args.objects, ObjectSource::Folder(PathBuf::from("scans")));
+        assert_eq!(args.only, ["cup", "can"]);
         assert_eq!((args.scale, args.seed), (Scale::Full, 9));
         assert_eq!(args.convention.name, "dexnet");
         assert_eq!((args.threads, args.quiet), (Some(3), true));

@@ -13,6 +13,16 @@ pub enum ExperimentError {
         /// What the system says.
         reason: std::io::Error,
     },
+    /// No object has an id that was asked for.
+    #[error("no object `{id}` in {source_name}; there are {known}")]
+    UnknownObject {
+        /// The id.
+        id: String,
+        /// Where it was looked for.
+        source_name: String,
+        /// The ids that exist.
+        known: String,
+    },
     /// Too few objects are left.
     #[error(
         "{fitted} of {given} objects of {source_name} can be used; expected at least {needed}{reasons}"
@@ -96,7 +106,10 @@ impl ExperimentError {
     /// 3 for bad input, 4 for a refusal on numerical grounds, 1 for anything else.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Folder { .. } | Self::TooFewObjects { .. } | Self::Cloud(_) => 3,
+            Self::Folder { .. }
+            | Self::UnknownObject { .. }
+            | Self::TooFewObjects { .. }
+            | Self::Cloud(_) => 3,
             Self::Output { .. }
             | Self::Report(_)
             | Self::Record(_)

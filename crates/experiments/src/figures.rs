@@ -5,6 +5,7 @@ pub mod gradient_ascent;
 pub mod initial_grasps;
 pub mod reconstruction;
 pub mod sampling;
+pub mod scattered_starts;
 pub mod shape_space;
 pub mod surfaces;
 pub mod transfer;

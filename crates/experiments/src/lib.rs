@@ -6,6 +6,7 @@
 pub mod args;
 pub mod error;
 pub mod figures;
+pub mod ledger;
 pub mod library;
 pub mod objects;
 pub mod output;

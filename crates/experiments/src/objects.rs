@@ -95,6 +95,29 @@ impl Objects {
         Ok(objects)
     }
 
+    /// Keeps the objects of the given ids, which keep their numbers; all of them for no ids.
+    ///
+    /// Errors: an id that is neither a cloud nor a refused object.
+    pub fn only(mut self, ids: &[String]) -> Result<Self, ExperimentError> {
+        let all = self.clouds.iter().map(|c| &c.id);
+        let known: Vec<String> = all
+            .chain(self.refused.iter().map(|r| &r.id))
+            .cloned()
+            .collect();
+        if let Some(id) = ids.iter().find(|id| !known.contains(id)) {
+            return Err(ExperimentError::UnknownObject {
+                id: id.clone(),
+                source_name: self.source.to_string(),
+                known: known.join(", "),
+            });
+        }
+        if !ids.is_empty() {
+            self.clouds.retain(|c| ids.contains(&c.id));
+            self.refused.retain(|r| ids.contains(&r.id));
+        }
+        Ok(self)
+    }
+
     /// Keeps the objects S_k of the given numbers; where some of them do not exist, the first
     /// objects, as many as numbers.
     pub fn select(mut self, numbers: &[usize]) -> Self {
@@ -190,6 +213,15 @@ mod tests {
         assert_eq!(objects.refused.len(), 1);
         assert_eq!(objects.refused[0].id, "aa");
         assert!(!objects.refused[0].reason.is_empty());
+        let only = objects.clone().only(&["b".to_owned()]).unwrap();
+        assert_eq!((only.clouds.len(), only.refused.len()), (1, 0));
+        assert_eq!(
+            (only.clouds[0].id.as_str(), only.clouds[0].number),
+            ("b", 3)
+        );
+        let error = objects.only(&["c".to_owned()]).unwrap_err();
+        assert_eq!(error.exit_code(), 3);
+        assert!(error.to_string().contains("a, b, aa"), "{error}");
     }
 
     #[test]

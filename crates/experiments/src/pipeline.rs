@@ -9,6 +9,7 @@ use nalgebra::Point3;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use shape::{Fit, FitSettings, RadialField, RadialShape};
+use sph::Direction;
 
 use crate::error::ExperimentError;
 use crate::objects::{ObjectCloud, ObjectSource, Objects, Refused};
@@ -106,8 +107,8 @@ pub fn fitted_objects(
     numbers: Option<&[usize]>,
     needed: usize,
 ) -> Result<FittedSet, ExperimentError> {
-    let mut objects = Objects::load(&run.objects, run.seed)?;
-    if let Some(numbers) = numbers {
+    let mut objects = Objects::load(&run.objects, run.seed)?.only(run.only)?;
+    if let (Some(numbers), true) = (numbers, run.only.is_empty()) {
         objects = objects.select(numbers);
     }
     run.say(&format!(
@@ -205,6 +206,12 @@ pub fn synthesize(
         .map(|pose| hand::evaluate_pose(&object, hand, pose, &params))
         .collect::<Result<Vec<_>, _>>()?;
     Ok(hand::collect(outcomes))
+}
+
+/// The contacts of grasps as directions.
+pub fn directions(grasps: &[Vec<HandGrasp>]) -> Vec<Vec<Vec<Direction>>> {
+    let of = |grasps: &Vec<HandGrasp>| grasps.iter().map(|g| g.directions.clone()).collect();
+    grasps.iter().map(of).collect()
 }
 
 /// The best hand grasps on every object: at most `count` each, of `poses` poses each.

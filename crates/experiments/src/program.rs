@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use crate::args::Args;
 use crate::error::ExperimentError;
+use crate::ledger;
 use crate::output::{Findings, write};
 use crate::run::{Run, fit_settings};
 use crate::table::Table;
@@ -55,12 +56,15 @@ pub fn execute(
             let _ = writeln!(std::io::stderr(), "{name} {seconds:7.1} s: {what}");
         }
     };
+    let unfinished = ledger::folder(&args.out, name);
     let run = Run {
         objects: args.objects.clone(),
+        only: &args.only,
         scale: args.scale,
         seed: args.seed,
         convention: args.convention.clone(),
         fit: fit_settings(args.degree, args.lambda),
+        keep: Some(&unfinished),
         progress: &progress,
     };
     let pool = rayon::ThreadPoolBuilder::new()
@@ -85,6 +89,12 @@ pub fn execute(
     write(&args.out, &format!("{name}.html"), page.as_bytes())?;
     let bytes = serde_json::to_vec_pretty(&value)?;
     let path = write(&args.out, &format!("{name}.json"), &bytes)?;
+    if unfinished.exists() {
+        std::fs::remove_dir_all(&unfinished).map_err(|reason| ExperimentError::Output {
+            path: unfinished,
+            reason,
+        })?;
+    }
     Ok(format!(
         "{table}{refused}{seconds:.1} s, {}",
         path.display()

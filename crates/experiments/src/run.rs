@@ -1,5 +1,7 @@
 //! One run of an experiment: its settings, as values.
 
+use std::path::Path;
+
 use clap::ValueEnum;
 use grasp::Convention;
 use rand::SeedableRng;
@@ -39,6 +41,8 @@ impl Scale {
 pub struct Run<'a> {
     /// Where the objects come from.
     pub objects: ObjectSource,
+    /// Ids of those that are used; all when empty.
+    pub only: &'a [String],
     /// How much is computed.
     pub scale: Scale,
     /// The seed of every random number.
@@ -47,6 +51,8 @@ pub struct Run<'a> {
     pub convention: Convention,
     /// How clouds become surfaces.
     pub fit: FitSettings,
+    /// Folder where long computations keep what is done, see [`crate::ledger`].
+    pub keep: Option<&'a Path>,
     /// Hears what is being done.
     pub progress: &'a (dyn Fn(&str) + Sync),
 }
@@ -66,10 +72,12 @@ impl<'a> Run<'a> {
     ) -> Self {
         Self {
             objects: ObjectSource::Builtin,
+            only: &[],
             scale,
             seed,
             convention,
             fit: fit_settings(paper::DEGREE, None),
+            keep: None,
             progress,
         }
     }
@@ -93,6 +101,8 @@ pub enum Purpose {
     Noise = 4,
     /// The same, in pictures.
     Drawn = 5,
+    /// Which transfers are measured against scattered starts, and those starts.
+    Starts = 6,
 }
 
 /// The generator of one purpose for the object (or sphere) of a number.

@@ -5,7 +5,8 @@ use std::path::Path;
 use experiments::args::Args;
 use experiments::program::{Experiment, execute};
 use experiments::sections::{
-    eigenfunctions, gradient_ascent, initial_grasps, sampling, shape_space, transfer,
+    eigenfunctions, gradient_ascent, initial_grasps, sampling, scattered_starts, shape_space,
+    transfer,
 };
 use serde_json::Value;
 use shape::TriangleMesh;
@@ -51,7 +52,7 @@ fn every_program_writes_its_keys_and_its_page() {
     let folder = tempfile::tempdir().unwrap();
     let out = tempfile::tempdir().unwrap();
     folder_of_clouds(folder.path());
-    let sections: [(&str, Experiment, &[&str]); 6] = [
+    let sections: [(&str, Experiment, &[&str]); 7] = [
         (
             "fig1",
             eigenfunctions::run,
@@ -70,6 +71,11 @@ fn every_program_writes_its_keys_and_its_page() {
             &["overall", "by_object", "steps"],
         ),
         ("sec4e", transfer::run, &["counts", "transfers", "stations"]),
+        (
+            "starts",
+            scattered_starts::run,
+            &["at_least_the_best_run", "transfers"],
+        ),
     ];
     for (name, section, keys) in sections {
         let (text, value) = run(name, section, folder.path(), out.path());
@@ -94,7 +100,18 @@ fn every_program_writes_its_keys_and_its_page() {
         let page = std::fs::read_to_string(out.path().join(format!("{name}.html"))).unwrap();
         assert!(page.contains("<h1>") && page.len() > 1_000_000, "{name}");
     }
-    assert_eq!(std::fs::read_dir(out.path()).unwrap().count(), 12);
+    assert_eq!(std::fs::read_dir(out.path()).unwrap().count(), 14);
+}
+
+#[test]
+fn an_object_that_does_not_exist_is_bad_input() {
+    let out = tempfile::tempdir().unwrap();
+    let words = ["test", "--only", "S4,S44", "-q"];
+    let mut args = Args::read("test", "about", words).unwrap();
+    args.out = out.path().join("results");
+    let error = execute("sec4b", "about", &args, sampling::run).unwrap_err();
+    assert_eq!(error.exit_code(), 3);
+    assert!(error.to_string().contains("S44"), "{error}");
 }
 
 #[test]

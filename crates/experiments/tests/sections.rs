@@ -5,7 +5,8 @@ use experiments::pipeline::{FittedSet, best_grasps, fit_all};
 use experiments::run::{Run, Scale, fit_settings};
 use experiments::sections::gradient_ascent::paper_ascent;
 use experiments::sections::{
-    gradient_ascent, initial_grasps, reconstruction, sampling, shape_space, transfer,
+    gradient_ascent, initial_grasps, reconstruction, sampling, scattered_starts, shape_space,
+    transfer,
 };
 use experiments::{ExperimentError, paper};
 use grasp::Convention;
@@ -19,10 +20,12 @@ fn quiet(_: &str) {}
 fn tiny_run() -> Run<'static> {
     Run {
         objects: ObjectSource::Builtin,
+        only: &[],
         scale: Scale::Small,
         seed: 5,
         convention: Convention::named("paper").expect("a known name"),
         fit: fit_settings(12, Some(1e-4)),
+        keep: None,
         progress: &quiet,
     }
 }
@@ -41,6 +44,8 @@ fn all_numbers(threads: usize) -> Result<Value, ExperimentError> {
         let run = tiny_run();
         let set = tiny_set(&run)?;
         let clouds: Vec<_> = set.objects.iter().map(|o| o.object.clone()).collect();
+        let plan = ascent_plan();
+        let ascent_grasps = best_grasps(&run, &set, plan.poses, plan.grasps)?;
         let carried_grasps = best_grasps(&run, &set, 60, 1)?;
         Ok(json!({
             "objects": set.describe(),
@@ -49,8 +54,9 @@ fn all_numbers(threads: usize) -> Result<Value, ExperimentError> {
             "shape_space": shape_space::measure(&run, &shape_space_plan(), &set)?,
             "sampling": sampling::measure(&run, &sampling_plan(), &set)?,
             "initial": initial_grasps::measure(&run, &initial_grasps::Plan { poses: 60 }, &set)?,
-            "ascent": gradient_ascent::measure(&run, &ascent_plan(), &set)?,
-            "transfer": transfer::measure(&run, &transfer_plan(), &set, &carried_grasps)?,
+            "ascent": gradient_ascent::measure(&run, &ascent_plan(), &set, &ascent_grasps)?.0,
+            "transfer": transfer::measure(&run, &transfer_plan(), &set, &carried_grasps)?.0,
+            "starts": scattered_starts::measure(&run, &starts_plan(), &set, &carried_grasps)?.0,
         }))
     })
 }
@@ -99,6 +105,17 @@ fn transfer_plan() -> transfer::Plan {
     }
 }
 
+fn starts_plan() -> scattered_starts::Plan {
+    scattered_starts::Plan {
+        objects: None,
+        poses: 60,
+        grasps: 1,
+        sample: 2,
+        runs: 2,
+        ascent: paper_ascent(5),
+    }
+}
+
 #[test]
 fn the_number_of_threads_changes_no_number() {
     let one = all_numbers(1).unwrap();
@@ -107,6 +124,7 @@ fn the_number_of_threads_changes_no_number() {
         assert_eq!(numbers, &three[section], "{section}");
     }
     assert_eq!(one["transfer"].as_array().unwrap().len(), 6);
+    assert_eq!(one["starts"].as_array().unwrap().len(), 2);
     assert_eq!(one["initial"].as_array().unwrap().len(), 3);
 }
 

@@ -91,6 +91,31 @@ impl TangentRule {
         }
     }
 
+    /// The walls at which the tangent jumps, around the side on which the normal `side` lies: for each
+    /// a function of the normal that is ≥ 0 on that side and 0 at the wall, at `normal`, and its slope
+    /// there.
+    ///
+    /// `LeastAligned` changes its axis where two components are equally small; `Projected` has no
+    /// walls, only one singular normal.
+    pub fn walls(
+        &self,
+        side: &UnitVector3<f64>,
+        normal: &UnitVector3<f64>,
+    ) -> impl Iterator<Item = (f64, Vector3<f64>)> + use<> {
+        let n = normal.into_inner();
+        let least = side.iamin();
+        let others = match self {
+            TangentRule::LeastAligned => 0..3,
+            TangentRule::Projected(_) => 0..0,
+        };
+        others.filter(move |k| *k != least).map(move |k| {
+            let mut slope = Vector3::zeros();
+            slope[k] = n[k].signum();
+            slope[least] = -n[least].signum();
+            (n[k].abs() - n[least].abs(), slope)
+        })
+    }
+
     /// The unit tangent at a normal.
     pub fn tangent(&self, normal: &UnitVector3<f64>) -> UnitVector3<f64> {
         let axis = self.axis(normal);

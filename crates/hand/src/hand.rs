@@ -1,15 +1,16 @@
 //! A hand ready for use: the model with its spec resolved and checked.
 
+mod problems;
 mod resolve;
 
-use nalgebra::{Point3, UnitVector3, Vector3};
+use nalgebra::{Point3, UnitVector3};
 use thiserror::Error;
 
 use crate::collision::{GeometryError, LinkShape};
 use crate::hand_spec::HandSpec;
 use crate::kinematics::KinematicsError;
 use crate::model::HandModel;
-use resolve::{bad_number, fingers, link_shapes, preshapes, standoff, tested_pairs};
+use resolve::{approach, fingers, link_shapes, palm, preshapes, standoff, tested_pairs};
 
 /// A finger of a [`Hand`].
 #[derive(Debug, Clone)]
@@ -162,26 +163,11 @@ pub enum HandError {
 impl Hand {
     /// Resolves a spec against a model. Errors name what does not fit.
     pub fn new(model: HandModel, spec: &HandSpec) -> Result<Self, HandError> {
-        let root = &model.links[0].name;
-        if *root != spec.palm {
-            return Err(HandError::Palm {
-                palm: spec.palm.clone(),
-                root: root.clone(),
-            });
-        }
+        palm(&model, spec)?;
         let shapes = link_shapes(&model)?;
         let fingers = fingers(&model, &shapes, &spec.finger)?;
         let preshapes = preshapes(&model, &spec.preshape)?;
-        let axis = Vector3::from(spec.approach_axis);
-        let approach_axis =
-            UnitVector3::try_new(axis, 1e-9).filter(|a| a.iter().all(|c| c.is_finite()));
-        let approach_axis =
-            approach_axis.ok_or_else(|| bad_number("approach_axis", axis.norm(), "a direction"))?;
-        for value in spec.approach_point {
-            if !value.is_finite() {
-                return Err(bad_number("approach_point", value, "finite"));
-            }
-        }
+        let (approach_axis, approach_point) = approach(spec)?;
         Ok(Hand {
             name: spec.name.clone(),
             tested_pairs: tested_pairs(&model, &shapes, spec)?,
@@ -189,7 +175,7 @@ impl Hand {
             preshapes,
             shapes,
             approach_axis,
-            approach_point: Point3::from(spec.approach_point),
+            approach_point,
             standoff: standoff(spec.standoff_m)?,
             model,
         })

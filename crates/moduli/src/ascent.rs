@@ -4,6 +4,7 @@ mod bundle;
 mod climber;
 mod monotone;
 mod paper;
+mod walls;
 
 pub use monotone::{AscentError, MonotoneAscent, WORTH};
 pub use paper::PaperAscent;

@@ -1,7 +1,7 @@
 //! Hard limits on where contacts may be.
 
 use grasp::QualityError;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use shape::Surface;
 use sph::Direction;
 use sph::direction::{log, retract};
@@ -124,9 +124,7 @@ impl Constraints {
 
     /// Whether contacts keep the limits of place: separation, reach and caps.
     pub fn allow(&self, surface: &impl Surface, contacts: &[Direction]) -> bool {
-        self.limits(surface, contacts)
-            .iter()
-            .all(|limit| limit.slack >= 0.0)
+        (0..self.count(contacts.len())).all(|k| self.limit(surface, contacts, k).slack >= 0.0)
     }
 
     /// Contacts moved into the limits of place, each violated one in turn along its slope.
@@ -139,34 +137,44 @@ impl Constraints {
         contacts: &[Direction],
     ) -> Result<Vec<Direction>, ConstraintError> {
         let mut here = contacts.to_vec();
+        self.repair_in_place(surface, &mut here)?;
+        Ok(here)
+    }
+
+    /// [`Constraints::repair`] where the contacts are; after an error they are anywhere.
+    pub fn repair_in_place(
+        &self,
+        surface: &impl Surface,
+        contacts: &mut [Direction],
+    ) -> Result<(), ConstraintError> {
+        let count = self.count(contacts.len());
         for round in 0..ROUNDS {
             let mut kept = true;
-            for k in 0..self.limits(surface, &here).len() {
-                let limit = &self.limits(surface, &here)[k];
+            for k in 0..count {
+                let limit = self.limit(surface, contacts, k);
                 if limit.slack < 0.0 {
                     kept = false;
                     if round < ROUNDS / 2 {
-                        limit.step_inside(&mut here);
+                        limit.step_inside(contacts);
                     } else {
-                        limit.step_around(&mut here);
+                        limit.step_around(contacts);
                     }
                 }
             }
             if kept {
-                return Ok(here);
+                return Ok(());
             }
         }
-        let missed = self.limits(surface, &here);
-        let worst = missed.iter().min_by(|a, b| {
-            let share = |l: &Limit| l.slack / l.scale;
-            share(a).total_cmp(&share(b))
-        });
+        let share = |l: &Limit| l.slack / l.scale;
+        let worst = (0..count)
+            .map(|k| self.limit(surface, contacts, k))
+            .min_by(|a, b| share(a).total_cmp(&share(b)));
         match worst {
             Some(limit) if limit.slack < 0.0 => Err(ConstraintError::Unreachable {
                 name: limit.name,
                 by: -limit.slack,
             }),
-            _ => Ok(here),
+            _ => Ok(()),
         }
     }
 
@@ -186,7 +194,8 @@ impl Constraints {
             second.linearise(surface, contacts, out)?;
             out.raise(value);
         }
-        for limit in self.limits(surface, contacts) {
+        for k in 0..self.count(contacts.len()) {
+            let limit = self.limit(surface, contacts, k);
             limit.write(contacts, out.push(limit.slack));
         }
         Ok(())
@@ -204,51 +213,81 @@ impl Constraints {
         }
     }
 
-    fn limits(&self, surface: &impl Surface, contacts: &[Direction]) -> Vec<Limit> {
-        let mut limits = Vec::new();
-        for cap in &self.caps {
-            for (i, p) in contacts.iter().enumerate() {
-                limits.push(Limit {
-                    name: "a cap",
-                    slack: cap.axis.dot(p) - cap.least_cosine,
-                    scale: 1.0,
-                    by_move: [(i, cap.axis.into_inner()), (i, Vector3::zeros())],
-                });
+    /// Number of limits of place on some contacts: of each contact and cap, then of each pair.
+    fn count(&self, contacts: usize) -> usize {
+        let of_a_pair =
+            usize::from(self.least_separation.is_some()) + usize::from(self.reach.is_some());
+        let pairs = contacts * contacts.saturating_sub(1) / 2;
+        self.caps.len() * contacts + of_a_pair * pairs
+    }
+
+    /// Limit k of these contacts.
+    fn limit(&self, surface: &impl Surface, contacts: &[Direction], k: usize) -> Limit {
+        let of_caps = self.caps.len() * contacts.len();
+        if k < of_caps {
+            return self.caps[k / contacts.len()].limit(contacts, k % contacts.len());
+        }
+        match (self.least_separation, self.reach) {
+            (Some(least), Some(reach)) => {
+                let (pair, bound) = ((k - of_caps) / 2, (k - of_caps) % 2);
+                let far = (bound == 1).then_some(reach);
+                of_pair(surface, contacts, pair, least, far)
             }
+            (least, far) => of_pair(surface, contacts, k - of_caps, least.unwrap_or(0.0), far),
         }
-        if self.least_separation.is_none() && self.reach.is_none() {
-            return limits;
+    }
+}
+
+impl Cap {
+    fn limit(&self, contacts: &[Direction], i: usize) -> Limit {
+        Limit {
+            name: "a cap",
+            slack: self.axis.dot(&contacts[i]) - self.least_cosine,
+            scale: 1.0,
+            by_move: [(i, self.axis.into_inner()), (i, Vector3::zeros())],
         }
-        let at: Vec<(Vector3<f64>, Matrix3<f64>)> = contacts
-            .iter()
-            .map(|p| surface.differential(p))
-            .map(|d| (d.position.coords, d.position_slope.transpose()))
-            .collect();
-        for (i, (a, slope_a)) in at.iter().enumerate() {
-            for (j, (b, slope_b)) in at.iter().enumerate().skip(i + 1) {
-                let apart = a - b;
-                let distance = apart.norm();
-                let along = apart.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
-                let by_move = [(i, slope_a * along), (j, -(slope_b * along))];
-                if let Some(least) = self.least_separation {
-                    limits.push(Limit {
-                        name: "the least separation",
-                        slack: distance - least,
-                        scale: least.max(1e-3),
-                        by_move,
-                    });
-                }
-                if let Some(reach) = self.reach {
-                    limits.push(Limit {
-                        name: REACH,
-                        slack: reach - distance,
-                        scale: reach.max(1e-3),
-                        by_move: by_move.map(|(i, v)| (i, -v)),
-                    });
-                }
-            }
-        }
-        limits
+    }
+}
+
+/// The limit of one pair of contacts: at most `far` apart where that is given, else at least `least`.
+fn of_pair(
+    surface: &impl Surface,
+    contacts: &[Direction],
+    pair: usize,
+    least: f64,
+    far: Option<f64>,
+) -> Limit {
+    // Pairs in the order (0,1), (0,2), …, (1,2), …
+    let (mut i, mut left) = (0, pair);
+    while left >= contacts.len() - 1 - i {
+        left -= contacts.len() - 1 - i;
+        i += 1;
+    }
+    let j = i + 1 + left;
+    let (a, b) = (
+        surface.differential(&contacts[i]),
+        surface.differential(&contacts[j]),
+    );
+    let apart = a.position - b.position;
+    let distance = apart.norm();
+    let along = apart.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+    let by_move = [
+        (i, a.position_slope.transpose() * along),
+        (j, -(b.position_slope.transpose() * along)),
+    ];
+    match far {
+        None => Limit {
+            name: "the least separation",
+            slack: distance - least,
+            scale: least.max(1e-3),
+            by_move,
+        },
+        Some(reach) => Limit {
+            name: REACH,
+            slack: reach - distance,
+            scale: reach.max(1e-3),
+            by_move: by_move.map(|(i, v)| (i, -v)),
+        },
     }
 }
 
@@ -283,20 +322,17 @@ impl Limit {
 
     /// The shortest move that, to first order, takes the slack just above 0.
     fn step_inside(&self, contacts: &mut [Direction]) {
-        let mut slope = vec![0.0; 2 * contacts.len()];
-        self.write(contacts, &mut slope);
-        let square = dot(&slope, &slope);
-        if square == 0.0 {
+        let mut slopes = self.by_move.map(|(i, v)| in_frame(&contacts[i], &v));
+        let square = |slopes: &[[f64; 2]; 2]| slopes.iter().map(|s| dot(s, s)).sum::<f64>();
+        if square(&slopes) == 0.0 {
             // Contacts in one place, or at the far end of a cap's axis: any way out will do.
-            for (k, (i, _)) in self.by_move.iter().enumerate() {
-                slope[2 * i + k] += 1.0;
-            }
+            slopes = [[1.0, 0.0], [0.0, 1.0]];
         }
-        let square = dot(&slope, &slope);
+        let square = square(&slopes);
         let wanted = (INSIDE * self.scale - self.slack) / square;
         let factor = wanted.min(REPAIR_STEP / square.sqrt());
-        for (p, u) in contacts.iter_mut().zip(slope.chunks_exact(2)) {
-            *p = moved(p, &[factor * u[0], factor * u[1]]);
+        for ((i, _), slope) in self.by_move.iter().zip(slopes) {
+            contacts[*i] = moved(&contacts[*i], &slope.map(|s| factor * s));
         }
     }
 }

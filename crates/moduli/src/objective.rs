@@ -15,7 +15,7 @@ use crate::quality::{LinearPieces, Quality, in_frame};
 /// Points of the surface among which the farthest from the centre is sought.
 const EXTENT_DIRECTIONS: usize = 2_000;
 /// Facets that are linearised, the weakest first.
-const FACETS: usize = 48;
+const FACETS: usize = 40;
 
 /// Q of contacts on a surface: the convention with everything the surface decides filled in.
 #[derive(Clone, Debug)]
@@ -67,7 +67,7 @@ impl Objective {
         Self {
             convention,
             centre,
-            workspace: Workspace::new(),
+            workspace: Workspace::following(),
             contacts: Vec::new(),
             evaluations: 0,
             scratch: Scratch::default(),
@@ -97,6 +97,14 @@ impl Objective {
     /// How many qualities have been computed so far.
     pub fn evaluations(&self) -> usize {
         self.evaluations
+    }
+
+    /// Forgets the grasps before: the answers that follow do not depend on them, to the last bit.
+    ///
+    /// Otherwise a search goes on from the last one ([`Workspace::following`]).
+    pub fn forget(&mut self) {
+        self.workspace.forget();
+        self.scratch.last = None;
     }
 
     /// The full answer for a list of contacts.
@@ -188,12 +196,12 @@ impl<S: Surface> Quality<S> for Objective {
         // what decides elsewhere is learnt from rejected steps.
         let polygon = matches!(self.convention.edges, Edges::Polygon(_));
         if margin.closed && polygon {
-            let band = 0.25 * margin.value + 1e-3;
+            let band =
+                std::env::var("BAND").map_or(0.25, |b| b.parse().unwrap()) * margin.value + 1e-3;
             let realised = std::mem::take(&mut self.contacts);
             let found = self.near_active_facets(&realised, band, &mut facets);
             self.contacts = realised;
             found?;
-            facets.sort_by(|a, b| a.offset.total_cmp(&b.offset));
             facets.truncate(FACETS);
         } else {
             facets.push(margin.facet);
@@ -217,6 +225,36 @@ impl<S: Surface> Quality<S> for Objective {
         };
         self.differentiate(surface, contacts);
         self.chain(contacts, &margin.facet, slope)
+    }
+
+    fn walls(
+        &mut self,
+        surface: &S,
+        side: &[Direction],
+        contacts: &[Direction],
+        walls: &mut LinearPieces,
+    ) {
+        walls.reset(contacts.len());
+        if !matches!(self.convention.edges, Edges::Polygon(_)) {
+            return;
+        }
+        let rule = self.convention.tangent;
+        for (i, (s, p)) in side.iter().zip(contacts).enumerate() {
+            let at = surface.differential(p);
+            let side = if s == p {
+                at.inward_normal
+            } else {
+                surface.contact(s).1
+            };
+            for (slack, by_normal) in rule.walls(&side, &at.inward_normal) {
+                let slope = in_frame(p, &(at.normal_slope.transpose() * by_normal));
+                walls.push(slack)[2 * i..2 * i + 2].copy_from_slice(&slope);
+            }
+        }
+    }
+
+    fn forget(&mut self) {
+        Objective::forget(self);
     }
 
     fn evaluations(&self) -> usize {

@@ -24,6 +24,12 @@ impl LinearPieces {
         self.slopes.clear();
     }
 
+    /// Makes room for pieces of the present dimension.
+    pub(crate) fn reserve(&mut self, pieces: usize) {
+        self.excess.reserve(pieces);
+        self.slopes.reserve(pieces * self.dimension);
+    }
+
     /// Adds a piece: its value above that of the least one, and its slope, zeros to be filled in.
     pub fn push(&mut self, excess: f64) -> &mut [f64] {
         let start = self.slopes.len();
@@ -92,6 +98,23 @@ pub trait Quality<S> {
         contacts: &[Direction],
         slope: &mut [f64],
     ) -> Result<(), QualityError>;
+
+    /// Where the quality jumps: the walls around the side on which `side` is, as functions of the moves
+    /// from `contacts`, positive on that side, linearised. `walls` is emptied before; their number and
+    /// order depend on nothing but the side. None by default.
+    fn walls(
+        &mut self,
+        surface: &S,
+        side: &[Direction],
+        contacts: &[Direction],
+        walls: &mut LinearPieces,
+    ) {
+        let _ = (surface, side);
+        walls.reset(contacts.len());
+    }
+
+    /// Forgets what earlier values left behind: what follows depends on nothing but its arguments.
+    fn forget(&mut self) {}
 
     /// Values computed so far.
     fn evaluations(&self) -> usize;

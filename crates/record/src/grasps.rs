@@ -2,11 +2,25 @@
 
 use std::collections::BTreeMap;
 
-use grasp::{CentreRule, Convention, EdgeNorm, Edges, TorqueLength};
+use grasp::{CentreRule, Convention, EdgeNorm, Edges, TangentRule, TorqueLength};
 use serde::{Deserialize, Serialize};
 
-/// Version of the layout of `grasps.json`.
+/// Version of the layout of `grasps.json`; additions with a default leave it as it is.
 pub const GRASPS_VERSION: u32 = 1;
+
+/// Why a text is no `grasps.json`.
+#[derive(Debug, thiserror::Error)]
+pub enum GraspsFileError {
+    /// Not JSON, or not with these keys.
+    #[error("not a grasps.json: {0}")]
+    Json(#[from] serde_json::Error),
+    /// Written by another version of the format.
+    #[error("a grasps.json of version {found}; this program reads version {GRASPS_VERSION}")]
+    Version {
+        /// Version found.
+        found: u32,
+    },
+}
 
 /// The whole file. Lengths in metres, angles in radians, everything in the frame of the cloud.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -56,6 +70,19 @@ pub struct ConventionRecord {
     pub edges: Option<usize>,
     /// What is reported for grasps that are not force-closed.
     pub not_closed: f64,
+    /// Where the first edge of each pyramid points, as a projection onto the tangent plane:
+    /// `least_aligned`, of the coordinate axis least aligned with the normal, or `projected`, of
+    /// `tangent_axis`.
+    #[serde(default = "least_aligned")]
+    pub tangent: String,
+    /// The projected vector, for `projected`.
+    #[serde(default)]
+    pub tangent_axis: Option<[f64; 3]>,
+}
+
+/// The rule of files from before the rule was written down.
+fn least_aligned() -> String {
+    "least_aligned".to_owned()
 }
 
 /// One grasp.
@@ -93,10 +120,16 @@ pub struct SourceRecord {
 pub struct HandRecord {
     /// Name of the hand.
     pub name: String,
-    /// Pose of the palm, the root link of the URDF, in the frame of the cloud.
+    /// The root link of the URDF, whose pose this is; empty in older files.
+    #[serde(default)]
+    pub palm_link: String,
+    /// Pose of the palm in the frame of the cloud.
     pub object_from_palm: PoseRecord,
-    /// Driven joints by name.
+    /// Driven joints by name, radians (metres for those that slide).
     pub joints_rad: BTreeMap<String, f64>,
+    /// The same before the fingers closed; empty in older files.
+    #[serde(default)]
+    pub pregrasp_joints_rad: BTreeMap<String, f64>,
     /// Largest distance from a contact that this hand makes to the grasp's own; 0 where the
     /// contacts are the hand's.
     pub contact_error_m: f64,
@@ -137,6 +170,91 @@ impl From<&Convention> for ConventionRecord {
                 Edges::Round { .. } => None,
             },
             not_closed: convention.not_closed,
+            tangent: match convention.tangent {
+                TangentRule::LeastAligned => least_aligned(),
+                TangentRule::Projected(_) => "projected".to_owned(),
+            },
+            tangent_axis: match convention.tangent {
+                TangentRule::LeastAligned => None,
+                TangentRule::Projected(axis) => Some(axis.into()),
+            },
         }
+    }
+}
+
+impl GraspsFile {
+    /// Reads the JSON text of a file of this version.
+    pub fn from_json(text: &[u8]) -> Result<Self, GraspsFileError> {
+        let file: Self = serde_json::from_slice(text)?;
+        if file.version == GRASPS_VERSION {
+            Ok(file)
+        } else {
+            Err(GraspsFileError::Version {
+                found: file.version,
+            })
+        }
+    }
+
+    /// The JSON text, indented; a number that is not finite becomes `null`.
+    pub fn to_json(&self) -> Result<Vec<u8>, serde_json::Error> {
+        serde_json::to_vec_pretty(self)
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    pub(crate) fn file() -> GraspsFile {
+        let mut convention = Convention::named("frogger").unwrap();
+        convention.tangent = TangentRule::Projected([1.2, 2.3, 3.4].into());
+        GraspsFile {
+            version: GRASPS_VERSION,
+            object: ObjectRecord {
+                name: "ball".to_owned(),
+                centre_m: [0.1, 0.2, 0.3],
+                r_min_certified_m: 0.03,
+                r_max_certified_m: 0.04,
+                centre_of_mass_m: [0.1, 0.2, 0.3],
+                volume_m3: 1e-4,
+            },
+            convention: ConventionRecord::from(&convention),
+            grasps: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn comes_back_with_its_tangent_rule() {
+        let read = GraspsFile::from_json(&file().to_json().unwrap()).unwrap();
+        assert_eq!(read, file());
+        assert_eq!(read.convention.tangent, "projected");
+        assert_eq!(read.convention.tangent_axis, Some([1.2, 2.3, 3.4]));
+    }
+
+    #[test]
+    fn files_from_before_the_tangent_rule_are_read() {
+        let mut value = serde_json::to_value(file()).unwrap();
+        let convention = value["convention"].as_object_mut().unwrap();
+        convention.remove("tangent");
+        convention.remove("tangent_axis");
+        let read = GraspsFile::from_json(value.to_string().as_bytes()).unwrap();
+        assert_eq!(read.convention.tangent, "least_aligned");
+        assert_eq!(read.convention.tangent_axis, None);
+    }
+
+    #[test]
+    fn another_version_is_refused() {
+        let newer = GraspsFile {
+            version: 2,
+            ..file()
+        };
+        assert!(matches!(
+            GraspsFile::from_json(&newer.to_json().unwrap()),
+            Err(GraspsFileError::Version { found: 2 })
+        ));
+        assert!(matches!(
+            GraspsFile::from_json(b"{}"),
+            Err(GraspsFileError::Json(_))
+        ));
     }
 }

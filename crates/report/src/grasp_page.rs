@@ -42,7 +42,7 @@ pub struct PageGrasp {
     pub inward_normals: Vec<[f64; 3]>,
     /// Further facts as name and value, as in joint angles of a hand.
     pub details: Vec<(String, String)>,
-    /// The hand around the object, metres; drawn translucent. Worth giving for the best few.
+    /// The hand around the object, metres. Worth giving for the best few.
     pub hand: Option<Mesh>,
 }
 

@@ -14,7 +14,7 @@ use crate::mesh::{Extent, Mesh};
 use crate::rounding::{millimetres, point_millimetres};
 use crate::theme;
 use crate::trace;
-use crate::view::{View, ViewProjection};
+use crate::view::{EYE_DIRECTION, View, ViewProjection};
 
 /// Points of the cloud that are drawn at most: every k-th of more.
 const MAX_CLOUD_POINTS: usize = 4000;
@@ -23,9 +23,15 @@ const ARROW: f64 = 0.2;
 /// Slant length of a friction cone as a share of the same diagonal.
 const CONE: f64 = 0.11;
 
-/// `{"plot": figure, "grasps": [[trace…]…]}`.
+/// `{"plot": figure, "grasps": [[trace…]…], "cameras": [{eye, center}…]}`.
 pub(crate) fn json(page: &GraspPage) -> String {
     let object = Extent::of(&in_millimetres(&page.mesh.vertices));
+    let bounds = bounds(page, object);
+    let cameras: Vec<String> = page
+        .grasps
+        .iter()
+        .map(|grasp| view(bounds, object, Some(grasp)).camera_json())
+        .collect();
     let grasps: Vec<String> = page
         .grasps
         .iter()
@@ -33,17 +39,17 @@ pub(crate) fn json(page: &GraspPage) -> String {
         .collect();
     trace::with_light(
         &format!(
-            "{{\"plot\":{},\"grasps\":[{}]}}",
-            fixed_plot(page, object).to_json(),
-            grasps.join(",\n")
+            "{{\"plot\":{},\"grasps\":[{}],\"cameras\":[{}]}}",
+            fixed_plot(page, &view(bounds, object, page.grasps.first())).to_json(),
+            grasps.join(",\n"),
+            cameras.join(",\n")
         ),
         false,
     )
 }
 
-/// Surface and cloud, with a layout that has room for every hand.
-fn fixed_plot(page: &GraspPage, object: Extent) -> Plot {
-    let subject = object.padded(0.5 * ARROW * object.diagonal());
+/// Room for everything that is ever shown.
+fn bounds(page: &GraspPage, object: Extent) -> Extent {
     let mut bounds = object.padded(0.1 * object.diagonal());
     for grasp in &page.grasps {
         bounds.grow(&label_positions(grasp, object.diagonal()));
@@ -52,12 +58,48 @@ fn fixed_plot(page: &GraspPage, object: Extent) -> Plot {
     for hand in page.grasps.iter().filter_map(|g| g.hand.as_ref()) {
         bounds.grow(&in_millimetres(&hand.vertices));
     }
-    let view = View {
+    bounds
+}
+
+/// The view of one grasp: the object, and the hand from its side, so that neither hides the other.
+fn view(bounds: Extent, object: Extent, grasp: Option<&PageGrasp>) -> View<'static> {
+    let mut subject = object.padded(0.5 * ARROW * object.diagonal());
+    let mut from = EYE_DIRECTION;
+    if let Some(hand) = grasp.and_then(|g| g.hand.as_ref()) {
+        let hand = Extent::of(&in_millimetres(&hand.vertices));
+        from = across(glyph::subtract(hand.centre(), object.centre()));
+        subject = object;
+        subject.grow(&[hand.low, hand.high]);
+        // The corners of so large a box are empty.
+        subject = subject.padded(-0.06 * subject.diagonal());
+    }
+    View {
         bounds,
         subject,
         axes: Some(["x / mm", "y / mm", "z / mm"]),
-        projection: ViewProjection::Perspective,
-    };
+        projection: ViewProjection::Perspective { from },
+    }
+}
+
+/// The direction at a right angle to `line` that is nearest to the usual one to the camera; the
+/// usual one where they are nearly parallel.
+fn across(line: [f64; 3]) -> [f64; 3] {
+    let square = line.iter().map(|v| v * v).sum::<f64>();
+    let along: f64 = (0..3).map(|i| line[i] * EYE_DIRECTION[i]).sum();
+    if square <= 0.0 {
+        return EYE_DIRECTION;
+    }
+    let rest = glyph::subtract(EYE_DIRECTION, glyph::scale(line, along / square));
+    let length = glyph::norm(rest);
+    if length < 0.2 {
+        EYE_DIRECTION
+    } else {
+        glyph::scale(rest, 1.0 / length)
+    }
+}
+
+/// Surface and cloud.
+fn fixed_plot(page: &GraspPage, view: &View) -> Plot {
     let mut plot = Plot::new();
     let vertices = in_millimetres(&page.mesh.vertices);
     plot.add_trace(trace::mesh(&vertices, &page.mesh.triangles, theme::SURFACE).meta("surface"));
@@ -101,7 +143,12 @@ fn grasp_traces(grasp: &PageGrasp, friction: f64, diagonal_mm: f64) -> Traces {
                 .meta("grasp"),
         );
         if friction > 0.0 {
-            traces.push(translucent(&cones, theme::CONE, 0.28, "cones"));
+            let vertices = rounded(&cones.vertices);
+            traces.push(
+                trace::mesh(&vertices, &cones.triangles, theme::CONE)
+                    .opacity(0.28)
+                    .meta("cones"),
+            );
         }
     }
     if let Some(hand) = &grasp.hand {
@@ -109,7 +156,12 @@ fn grasp_traces(grasp: &PageGrasp, friction: f64, diagonal_mm: f64) -> Traces {
             vertices: in_millimetres(&hand.vertices),
             triangles: hand.triangles.clone(),
         };
-        traces.push(translucent(&hand, theme::HAND, 0.3, "hand"));
+        let vertices = rounded(&hand.vertices);
+        traces.push(
+            trace::mesh(&vertices, &hand.triangles, theme::HAND)
+                .flat_shading(true)
+                .meta("hand"),
+        );
     }
     traces
 }
@@ -142,13 +194,6 @@ fn contact_markers(contacts_mm: &[[f64; 3]]) -> Box<dyn Trace> {
 
 fn solid(mesh: &Mesh, colour: &'static str, role: &str) -> Box<dyn Trace> {
     trace::mesh(&rounded(&mesh.vertices), &mesh.triangles, colour).meta(role)
-}
-
-fn translucent(mesh: &Mesh, colour: &'static str, opacity: f64, role: &str) -> Box<dyn Trace> {
-    trace::mesh(&rounded(&mesh.vertices), &mesh.triangles, colour)
-        .flat_shading(role == "hand")
-        .opacity(opacity)
-        .meta(role)
 }
 
 fn in_millimetres(points_m: &[[f64; 3]]) -> Vec<[f64; 3]> {

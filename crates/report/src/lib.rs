@@ -43,5 +43,5 @@ pub use mesh::Mesh;
 pub use page::{Block, Page, Section};
 pub use scene::Scene;
 pub use scene_grid::{SceneCell, SceneGrid};
-pub use scene_item::{Arrows, ColourScale, Item, Lines, Points, Surface};
+pub use scene_item::{Arrows, ColourScale, Item, Lines, Part, Points, Surface};
 pub use table::Table;

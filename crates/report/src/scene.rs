@@ -9,7 +9,7 @@ use crate::error::ReportError;
 use crate::mesh::Extent;
 use crate::scene_item::{ColourScale, Colours, Item};
 use crate::theme;
-use crate::view::{View, ViewProjection};
+use crate::view::{EYE_DIRECTION, View, ViewProjection};
 
 /// One 3-D view that can be turned, with equal scales on all axes.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -18,7 +18,7 @@ pub struct Scene {
     pub title: String,
     /// Axis titles with their unit, as in `"x / mm"`; `None` draws no axes.
     pub axes: Option<[String; 3]>,
-    /// What is shown; points and lines take the colours of the palette in this order.
+    /// What is shown; parts, points and lines take the colours of the palette in this order.
     pub items: Vec<Item>,
     /// How surface values become colours.
     pub colour_scale: ColourScale,
@@ -50,7 +50,9 @@ impl Scene {
                 .axes
                 .as_ref()
                 .map(|titles| std::array::from_fn(|i| titles[i].as_str())),
-            projection: ViewProjection::Perspective,
+            projection: ViewProjection::Perspective {
+                from: EYE_DIRECTION,
+            },
         };
         let mut plot = Plot::new();
         plot.set_layout(

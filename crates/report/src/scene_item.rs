@@ -1,4 +1,4 @@
-//! What a scene can hold: surfaces, points, lines, arrows.
+//! What a scene can hold: surfaces, parts, points, lines, arrows.
 
 use plotly::Trace;
 use plotly::common::{ColorBar, ColorScale, ColorScalePalette, HoverInfo, ThicknessMode, Title};
@@ -17,6 +17,8 @@ use crate::trace;
 pub enum Item {
     /// A lit surface, plain or coloured by a scalar.
     Surface(Surface),
+    /// A lit surface in a colour of its own.
+    Part(Part),
     /// Unconnected points.
     Points(Points),
     /// One polyline.
@@ -32,6 +34,15 @@ pub struct Surface {
     pub mesh: Mesh,
     /// A scalar a vertex that colours the surface; empty for a plain surface.
     pub values: Vec<f64>,
+}
+
+/// A lit surface in a colour of the palette.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Part {
+    /// Name in the legend; no entry if empty.
+    pub name: String,
+    /// The mesh.
+    pub mesh: Mesh,
 }
 
 /// Unconnected points of one colour.
@@ -126,6 +137,7 @@ impl Item {
                 check::same_length(&place, surface.mesh.vertices.len(), surface.values.len())?;
                 check::finite(&place, &surface.values)
             }
+            Item::Part(part) => part.mesh.check(&format!("{place}: mesh")),
             Item::Points(points) => {
                 check::finite_points(&format!("{place}: points"), &points.points)?;
                 let labels = format!("{place}: labels");
@@ -140,6 +152,7 @@ impl Item {
     pub(crate) fn extent(&self) -> Extent {
         match self {
             Item::Surface(surface) => Extent::of(&surface.mesh.vertices),
+            Item::Part(part) => Extent::of(&part.mesh.vertices),
             Item::Points(points) => Extent::of(&points.points),
             Item::Lines(lines) => Extent::of(&lines.points),
             Item::Arrows(arrows) => Extent::of(&arrows.mesh().vertices),
@@ -168,6 +181,16 @@ impl Item {
                 colours,
                 colour_bar,
             )],
+            Item::Part(part) => {
+                let colour = theme::series_colour(series);
+                let vertices = place(&part.mesh.vertices);
+                let trace = trace::mesh(&vertices, &part.mesh.triangles, colour).flat_shading(true);
+                vec![if part.name.is_empty() {
+                    trace
+                } else {
+                    trace.name(text::plot(&part.name)).show_legend(true)
+                }]
+            }
             Item::Points(points) => point_traces(points, &place(&points.points), series),
             Item::Lines(lines) => {
                 let trace = trace::line(&place(&lines.points), theme::series_colour(series), 4.0);
@@ -187,7 +210,7 @@ impl Item {
 
     /// Whether the item takes a colour of its own from the series palette.
     pub(crate) fn takes_series_colour(&self) -> bool {
-        matches!(self, Item::Points(_) | Item::Lines(_))
+        matches!(self, Item::Part(_) | Item::Points(_) | Item::Lines(_))
     }
 }
 

@@ -11,7 +11,7 @@ use crate::text;
 use crate::theme;
 
 /// Direction from the subject to the camera in perspective views: right, front, above.
-const EYE_DIRECTION: [f64; 3] = [0.56, -0.72, 0.41];
+pub(crate) const EYE_DIRECTION: [f64; 3] = [0.56, -0.72, 0.41];
 /// Direction to the camera of a flat view: almost straight from the front.
 const FRONT_DIRECTION: [f64; 3] = [0.0, -0.97, 0.24];
 
@@ -30,8 +30,11 @@ pub(crate) struct View<'a> {
 /// How a view is projected.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum ViewProjection {
-    /// From the right, the front and above, at a distance that shows the subject.
-    Perspective,
+    /// At a distance that shows the subject.
+    Perspective {
+        /// Direction to the camera, a unit vector.
+        from: [f64; 3],
+    },
     /// Parallel and from the front (−y).
     Front {
         /// Height over width of the picture.
@@ -58,7 +61,7 @@ impl View<'_> {
     fn unit(&self) -> f64 {
         let [width, _, height] = self.bounds.size();
         let unit = match self.projection {
-            ViewProjection::Perspective => self.bounds.longest(),
+            ViewProjection::Perspective { .. } => self.bounds.longest(),
             // A parallel view of plotly.js is 2 units high wherever the camera stands, and
             // 2/shape wide, of which the colour bar takes its part.
             ViewProjection::Front { shape } => (height / 1.95).max(width * shape / 1.75),
@@ -67,25 +70,36 @@ impl View<'_> {
     }
 
     fn camera(&self, unit: f64) -> Camera {
-        let middle = self.bounds.centre();
-        let target = self.subject.centre();
-        let centre: [f64; 3] = std::array::from_fn(|i| (target[i] - middle[i]) / unit);
-        let (direction, distance, projection) = match self.projection {
-            ViewProjection::Perspective => {
-                let distance = 1.55 * self.subject.diagonal() / unit;
-                (EYE_DIRECTION, distance, ProjectionType::Perspective)
-            }
-            ViewProjection::Front { .. } => {
-                let distance = 2.0 * self.bounds.diagonal() / unit;
-                (FRONT_DIRECTION, distance, ProjectionType::Orthographic)
-            }
+        let projection = match self.projection {
+            ViewProjection::Perspective { .. } => ProjectionType::Perspective,
+            ViewProjection::Front { .. } => ProjectionType::Orthographic,
         };
-        let eye: [f64; 3] = std::array::from_fn(|i| centre[i] + distance * direction[i]);
+        let [eye, centre] = self.eye_and_centre(unit);
         Camera::new()
             .center(CameraCenter::from((centre[0], centre[1], centre[2])))
             .eye(Eye::from((eye[0], eye[1], eye[2])))
             .up(Up::from((0.0, 0.0, 1.0)))
             .projection(Projection::new().projection_type(projection))
+    }
+
+    /// Where the camera stands and what it looks at, as plain JSON for a script.
+    pub(crate) fn camera_json(&self) -> String {
+        let [eye, centre] = self.eye_and_centre(self.unit());
+        let point = |p: [f64; 3]| format!("{{\"x\":{},\"y\":{},\"z\":{}}}", p[0], p[1], p[2]);
+        format!("{{\"eye\":{},\"center\":{}}}", point(eye), point(centre))
+    }
+
+    /// In coordinates of the camera.
+    fn eye_and_centre(&self, unit: f64) -> [[f64; 3]; 2] {
+        let middle = self.bounds.centre();
+        let target = self.subject.centre();
+        let centre: [f64; 3] = std::array::from_fn(|i| (target[i] - middle[i]) / unit);
+        let (direction, distance) = match self.projection {
+            ViewProjection::Perspective { from } => (from, 1.55 * self.subject.diagonal() / unit),
+            ViewProjection::Front { .. } => (FRONT_DIRECTION, 2.0 * self.bounds.diagonal() / unit),
+        };
+        let eye = std::array::from_fn(|i| centre[i] + distance * direction[i]);
+        [eye, centre]
     }
 
     fn axis(&self, k: usize) -> Axis {

@@ -8,6 +8,7 @@ use crate::point_cloud::{CloudError, PointCloud};
 use crate::radial::{RadialError, RadialShape};
 use crate::star::{Crossing, StarShape, star_shape};
 use crate::unseen::filled_in;
+use crate::vessel::{Opening, Vessel};
 
 /// How a cloud is turned into a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +26,9 @@ pub const PENALTY_POWER: i32 = 2;
 /// and handles, stay below 0.05; of the real objects in the tests a drill has 0.12, a mug 0.65 (with
 /// 2 mm of noise still more than 0.2) and a bowl with its thin wall 0.71.
 pub const MOST_MULTIPLE: f64 = 0.2;
+
+/// The same for a cloud with an opening, through which the inside of a wall can be seen.
+pub const MOST_MULTIPLE_OPEN: f64 = 0.1;
 
 /// [`StarShape::unseen`] above which a cloud is refused: a line, a sheet or a handful of points. A
 /// single view of a solid object leaves about a quarter of the directions open.
@@ -61,7 +65,7 @@ pub enum FitError {
     #[error(
         "not star-shaped: in {percent:.0} % of the directions the surface is met twice (limit {limit_percent:.0} %), most clearly along ({x:.3}, {y:.3}, {z:.3}) from the mean, at {inner:.4} m and {outer:.4} m, and {unseen_percent:.0} % of the directions hold no point; scan it closed, cut it into parts, or choose another object",
         percent = 100.0 * star.multiple,
-        limit_percent = 100.0 * MOST_MULTIPLE,
+        limit_percent = 100.0 * limit,
         unseen_percent = 100.0 * star.unseen,
         x = worst.direction.x,
         y = worst.direction.y,
@@ -72,8 +76,28 @@ pub enum FitError {
     NotStarShaped {
         /// The measure, with every direction in question.
         star: Box<StarShape>,
+        /// The limit of [`StarShape::multiple`] that it exceeds.
+        limit: f64,
         /// The clearest of them.
         worst: Crossing,
+    },
+    /// The cloud is an open vessel whose walls the noise hides.
+    #[error(
+        "not star-shaped: an open vessel; around ({x:.3}, {y:.3}, {z:.3}) from the mean {percent:.0} % of the directions hold no point, and {why}; scan it closed, cut it into parts, or choose another object",
+        x = opening.axis.x,
+        y = opening.axis.y,
+        z = opening.axis.z,
+        percent = 100.0 * opening.share,
+        why = match vessel {
+            Vessel::TwoWalls => "the scatter of the points is that of two walls",
+            Vessel::SeenFromAllSides => "the points are spread as evenly as if seen from all sides",
+        },
+    )]
+    OpenVessel {
+        /// Its mouth.
+        opening: Opening,
+        /// What tells it from a solid seen from one side.
+        vessel: Vessel,
     },
     /// Most of the surface was not seen.
     #[error(
@@ -125,7 +149,7 @@ pub struct Fit {
 /// penalty, and proves the result positive.
 ///
 /// A cloud whose surface is met twice in more than [`MOST_MULTIPLE`] of the directions is refused, and
-/// one that leaves more than [`MOST_UNSEEN`] of them open.
+/// one that leaves more than [`MOST_UNSEEN`] of them open, and an open [`Vessel`].
 /// Points that are both far from the surface and alone are outliers: they lose their weight and
 /// the fit is repeated, at most four times; a cloud without them is fitted once. Directions in
 /// which nothing was seen take part with a membrane spanned from what was seen around them. A λ
@@ -137,20 +161,15 @@ pub fn fit(cloud: &PointCloud, settings: &FitSettings) -> Result<Fit, FitError> 
     loop {
         let view = View::new(cloud, &outliers)?;
         let star = star_shape(&view.samples);
-        if star.multiple > MOST_MULTIPLE {
+        if let Some(error) = refusal(&star) {
             // A swarm of stray points looks like a second sheet: look again without it.
             let stray = lonely_points(&view.points);
             if round > 0 || stray.is_empty() {
-                return Err(not_star_shaped(star));
+                return Err(error);
             }
             outliers.extend(stray.iter().map(|i| view.index[*i]));
             round += 1;
             continue;
-        }
-        if star.unseen > MOST_UNSEEN {
-            return Err(FitError::Unseen {
-                unseen: star.unseen,
-            });
         }
         round += 1;
         let solved = view.solve(settings, &star)?;
@@ -164,13 +183,25 @@ pub fn fit(cloud: &PointCloud, settings: &FitSettings) -> Result<Fit, FitError> 
     }
 }
 
-fn not_star_shaped(star: StarShape) -> FitError {
+/// Why a cloud is the graph of no radius, if it is not.
+fn refusal(star: &StarShape) -> Option<FitError> {
+    let limit = star.opening.map_or(MOST_MULTIPLE, |_| MOST_MULTIPLE_OPEN);
     // A share above the limit has crossings; the clearest is the first.
-    let worst = star.crossings[0];
-    FitError::NotStarShaped {
-        worst,
-        star: Box::new(star),
+    if star.multiple > limit {
+        return Some(FitError::NotStarShaped {
+            worst: star.crossings[0],
+            star: Box::new(star.clone()),
+            limit,
+        });
     }
+    if let Some(opening) = star.opening
+        && let Some(vessel) = opening.vessel
+    {
+        return Some(FitError::OpenVessel { opening, vessel });
+    }
+    (star.unseen > MOST_UNSEEN).then_some(FitError::Unseen {
+        unseen: star.unseen,
+    })
 }
 
 /// Whether stray points have pulled the surface.

@@ -1,17 +1,29 @@
-//! The normal f_u × f_v of a map S² → R³ as a function on the sphere, and a proof that it never
-//! vanishes.
+//! A proof that the normal f_u × f_v of a map S² → R³ vanishes nowhere, or the place where it does.
+
+use std::collections::BinaryHeap;
 
 use nalgebra::Vector3;
-use sph::bounds::certified_range;
-use sph::grid::{GridValues, RingGrid};
+use sph::grid::RingGrid;
 use sph::{Coefficients, Direction, SphericalCoords};
 
-use crate::rotation_field::rotational_gradient;
+use crate::normals::{NormalField, normals};
 
-/// Points per half wave of the certificate; the first that decides is used.
-const OVERSAMPLING: [usize; 2] = [3, 6];
+/// Points per half wave of N on the first grid.
+const OVERSAMPLING: usize = 5;
 /// A normal shorter than this part of the longest one is taken for zero.
 const VANISHING: f64 = 1e-6;
+/// Errors of the normals themselves, as a part of the longest one.
+const ROUNDING: f64 = 1e-9;
+/// The proved bound is at least this part of the shortest normal seen.
+const SHARE: f64 = 0.5;
+/// Cells quartered at most, about a second; long and lean scans at L = 50 need some thirty.
+const MOST_CELLS: usize = 5_000;
+
+/// Points of a stencil along one axis, and of those the first corner of its cell.
+const STENCIL: usize = 8;
+const CORNER: usize = 3;
+/// max over the cell of Π|t − tₖ| / 8!, the remainder of the stencil's polynomial.
+const REMAINDER: f64 = 1.069e-3;
 
 /// Bounds of |f_u × f_v|, the area of the surface per area of the sphere, m².
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,15 +55,26 @@ pub enum SphericalError {
         /// Largest |f_u × f_v|.
         largest: f64,
     },
-    /// The normal was nowhere zero on the grid, but that is no proof.
+    /// The normal was nowhere zero, but too short in too many places for a proof within the limit of
+    /// work.
     #[error(
-        "cannot prove the map an immersion: area element at least {seen:.3e} m² on a grid, but the certificate ends at {certificate:.3} (needs > 0); a lower degree or more penalty may help"
+        "cannot prove the map an immersion: {open} places remain after {cells} cells, the least area element {seen:.3e} m² along ({x:.3}, {y:.3}, {z:.3}), where the largest is {largest:.3e} m²; a lower degree or more penalty may help"
     )]
     Undecided {
-        /// Least value seen.
+        /// Least |f_u × f_v| seen.
         seen: f64,
-        /// Certified lower bound of the product that should be positive.
-        certificate: f64,
+        /// Direction, x.
+        x: f64,
+        /// Direction, y.
+        y: f64,
+        /// Direction, z.
+        z: f64,
+        /// Largest |f_u × f_v|.
+        largest: f64,
+        /// Cells that are not settled.
+        open: usize,
+        /// Cells looked at.
+        cells: usize,
     },
     /// f_u × f_v points inward.
     #[error("the surface is inside out (volume {volume:.3e} m³); mirror the sphere coordinates")]
@@ -61,205 +84,268 @@ pub enum SphericalError {
     },
 }
 
-/// Directions of a grid's points, ring after ring.
-pub(crate) fn grid_directions(grid: &RingGrid) -> Vec<Vector3<f64>> {
-    let step = std::f64::consts::TAU / grid.longitudes() as f64;
-    let turns: Vec<(f64, f64)> = (0..grid.longitudes())
-        .map(|k| (step * k as f64).sin_cos())
-        .collect();
-    let ring = |&(s, z): &(f64, f64)| turns.iter().map(move |(sin, cos)| [s * cos, s * sin, z]);
-    grid.rings()
-        .iter()
-        .flat_map(ring)
-        .map(Vector3::from)
-        .collect()
-}
-
-/// f_u × f_v on a grid: N_x = p·(∇y × ∇z) = p·((p×∇y) × (p×∇z)), and so on round.
-///
-/// Nine syntheses; exact, poles included.
-pub(crate) fn normals(coordinates: &[Coefficients; 3], grid: &RingGrid) -> Vec<Vector3<f64>> {
-    let fields = coordinates.each_ref().map(|c| {
-        let parts = rotational_gradient(c);
-        parts.map(|part| grid.synthesis(&part).values)
-    });
-    let at = |axis: usize, i: usize| {
-        let [x, y, z] = &fields[axis];
-        Vector3::new(x[i], y[i], z[i])
-    };
-    grid_directions(grid)
-        .iter()
-        .enumerate()
-        .map(|(i, p)| {
-            let [a, b, c] = [at(0, i), at(1, i), at(2, i)];
-            Vector3::new(
-                p.dot(&b.cross(&c)),
-                p.dot(&c.cross(&a)),
-                p.dot(&a.cross(&b)),
-            )
-        })
-        .collect()
-}
-
 /// Proves that N = f_u × f_v vanishes nowhere.
 ///
-/// N is a spherical polynomial of degree at most 2L+1. W, of degree K, is chosen such that g = N·W is
-/// positive and even ([`Samples::multiplier`]); g has degree at most 2L+1+K, and a certified g > 0
-/// leaves no zero to N: |N| ≥ min g / max |W|.
+/// The sphere is cut into cells in (θ, φ). Over a cell N·d, d the mean direction of N at its corners, is
+/// a trigonometric polynomial of degree D = 2L+1 in both angles, and so its polynomial over the 8 × 8
+/// points around the cell to within (1 + Σ max|w|)·|N|_∞ (D·step)⁸ × 1.07e-3 (Bernstein's inequality
+/// for the eighth derivative). That polynomial is the bilinear interpolant of the corners, which stays
+/// above their least value, and a part that sees only what the bilinear function misses at the other
+/// points. Cells that are not settled so are quartered, those with the shortest normal first, until N
+/// is found to vanish (below 1e-6 of its largest length), all are settled, or the work exceeds its limit.
 pub(crate) fn certify(coordinates: &[Coefficients; 3]) -> Result<Immersion, SphericalError> {
-    let degree = coordinates[0].degree();
-    let samples = Samples::new(coordinates)?;
-    let multiplier = samples.multiplier(degree);
-    let longest = multiplier
-        .iter()
-        .map(|w| certified_range(w, 8))
-        .map(|range| range.lower.abs().max(range.upper).powi(2))
-        .sum::<f64>()
-        .sqrt();
-    let mut certificate = f64::NAN;
-    for oversampling in OVERSAMPLING {
-        let rings = oversampling * (2 * degree + 1 + multiplier[0].degree()) + 1;
-        let grid = RingGrid::equiangular(rings, 2 * (rings - 1));
-        let products = products(&normals(coordinates, &grid), &multiplier, &grid);
-        let (low, high) = extremes(&products);
-        // The bound of sph::bounds for a polynomial known by its values.
-        let widening = (0.5 * std::f64::consts::PI / oversampling as f64)
-            .cos()
-            .powi(-2);
-        let rounding = 1e-12 * (longest * samples.longest + 1.0);
-        certificate = 0.5 * (low + high) - 0.5 * (high - low) * widening - rounding;
-        if certificate > 0.0 {
-            return Ok(Immersion {
-                lower: certificate / longest,
-                seen_lower: samples.shortest,
-                seen_upper: samples.longest,
-            });
-        }
-    }
-    Err(SphericalError::Undecided {
-        seen: samples.shortest,
-        certificate,
-    })
+    let degree = 2 * coordinates[0].degree() + 1;
+    let half = OVERSAMPLING * degree.max(8);
+    let grid = Grid::new(coordinates, half);
+    let lengths = grid.padded.iter().map(Vector3::norm);
+    let (shortest, longest) = lengths.fold((f64::INFINITY, 0.0_f64), |(low, high), l| {
+        (low.min(l), high.max(l))
+    });
+    let mut search = Search {
+        field: NormalField::new(coordinates),
+        weights: Weights::new(),
+        degree: degree as f64,
+        // The bound of sph::bounds, for every N·d.
+        most: longest
+            * (0.5 * std::f64::consts::PI / OVERSAMPLING as f64)
+                .cos()
+                .powi(-2),
+        longest,
+        shortest,
+        lower: f64::INFINITY,
+        open: BinaryHeap::new(),
+    };
+    search.first(&grid);
+    search.run()
 }
 
-/// N on a Gauss–Legendre grid.
-struct Samples {
-    grid: RingGrid,
-    normals: Vec<Vector3<f64>>,
-    shortest: f64,
-    longest: f64,
+/// N at θ = πi/half, φ = πj/half, and a stencil's reach beyond all ends.
+struct Grid {
+    padded: Vec<Vector3<f64>>,
+    stride: usize,
+    half: usize,
 }
 
-impl Samples {
-    /// Refuses normals that vanish, or nearly, on the grid.
-    fn new(coordinates: &[Coefficients; 3]) -> Result<Self, SphericalError> {
-        let rings = 3 * coordinates[0].degree() + 4;
-        let grid = RingGrid::gauss_legendre(rings, 2 * rings);
-        let normals = normals(coordinates, &grid);
-        let lengths: Vec<f64> = normals.iter().map(|n| n.norm()).collect();
-        let (shortest, longest) = extremes(&lengths);
-        if shortest > VANISHING * longest {
-            return Ok(Self {
-                grid,
-                normals,
-                shortest,
-                longest,
-            });
-        }
-        let at = lengths.iter().position(|l| *l == shortest).unwrap_or(0);
-        let p = direction(&grid, at);
-        Err(SphericalError::NotImmersed {
-            seen: shortest,
-            x: p.x,
-            y: p.y,
-            z: p.z,
-            largest: longest,
-        })
-    }
-
-    /// The W whose product with N is most even on the grid.
-    ///
-    /// Each candidate approximates D/(N·D), for a field D that looks the same way as N: p, as on
-    /// every member of M^rad, or N/|N| itself, smoothed. Low degrees make the certificate cheap,
-    /// high ones follow N more closely.
-    fn multiplier(&self, degree: usize) -> [Coefficients; 3] {
-        let unit: Vec<Vector3<f64>> = self.normals.iter().map(|n| n.normalize()).collect();
-        let smooth = |degree: usize| self.values(&self.analysed(&unit, degree));
-        let fields = [
-            grid_directions(&self.grid),
-            smooth(8),
-            smooth(24),
-            unit.clone(),
-        ];
-        let mut best = (
-            f64::NEG_INFINITY,
-            std::array::from_fn(|_| Coefficients::zeros(0)),
-        );
-        for field in fields {
-            let along: Vec<f64> = field
-                .iter()
-                .zip(&self.normals)
-                .map(|(d, n)| d.dot(n))
-                .collect();
-            // Where D leaves N's side its quotient is of no use.
-            if along
-                .iter()
-                .zip(&self.normals)
-                .any(|(a, n)| *a <= 0.02 * n.norm())
-            {
-                continue;
-            }
-            let quotient: Vec<Vector3<f64>> =
-                field.iter().zip(&along).map(|(d, a)| d / *a).collect();
-            for order in [4, 16, degree.max(16)] {
-                let candidate = self.analysed(&quotient, order);
-                let (low, high) = extremes(&products(&self.normals, &candidate, &self.grid));
-                if low / high > best.0 {
-                    best = (low / high, candidate);
-                }
-            }
-        }
-        best.1
-    }
-
-    fn analysed(&self, field: &[Vector3<f64>], degree: usize) -> [Coefficients; 3] {
-        std::array::from_fn(|axis| {
-            let values = GridValues {
-                longitudes: self.grid.longitudes(),
-                values: field.iter().map(|v| v[axis]).collect(),
+impl Grid {
+    fn new(coordinates: &[Coefficients; 3], half: usize) -> Self {
+        let normals = normals(coordinates, &RingGrid::equiangular(half + 1, 2 * half));
+        let stride = 2 * half + STENCIL;
+        let padded = (0..half + STENCIL).flat_map(|row| {
+            // Beyond the poles (−θ, φ) is (θ, φ + π).
+            let (ring, turn) = match row {
+                _ if row < CORNER => (CORNER - row, half),
+                _ if row > half + CORNER => (2 * half + CORNER - row, half),
+                _ => (row - CORNER, 0),
             };
-            self.grid.analysis(&values, degree)
+            let normals = &normals;
+            (0..stride).map(move |column| {
+                let longitude = (column + 2 * half - CORNER + turn) % (2 * half);
+                normals[ring * 2 * half + longitude]
+            })
+        });
+        Self {
+            padded: padded.collect(),
+            stride,
+            half,
+        }
+    }
+}
+
+/// max |wₖ(t)| over the cell 0 ≤ t ≤ 1 of the stencil's Lagrange polynomials, nodes −3 … 4.
+struct Weights([f64; STENCIL]);
+
+impl Weights {
+    fn new() -> Self {
+        const STEPS: usize = 1000;
+        let node = |k: usize| k as f64 - CORNER as f64;
+        let weight = |k: usize, t: f64| -> f64 {
+            let others = (0..STENCIL).filter(|m| *m != k);
+            others
+                .map(|m| (t - node(m)) / (node(k) - node(m)))
+                .product()
+        };
+        Self(std::array::from_fn(|k| {
+            let values = (0..=STEPS).map(|i| weight(k, i as f64 / STEPS as f64).abs());
+            // Between the places looked at it is less than 1e-5 more.
+            values.fold(0.0, f64::max) + 1e-5
+        }))
+    }
+
+    fn sum(&self) -> f64 {
+        self.0.iter().sum()
+    }
+}
+
+/// Angles from (theta, phi) to one step more that are not settled.
+struct Cell {
+    theta: f64,
+    phi: f64,
+    step: f64,
+    /// Shortest |N| at its corners.
+    shortest: f64,
+    /// That corner.
+    at: Direction,
+}
+
+/// Cells are taken from the heap by their shortest normal.
+impl Ord for Cell {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        other.shortest.total_cmp(&self.shortest)
+    }
+}
+
+impl PartialOrd for Cell {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Cell {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Cell {}
+
+struct Search {
+    field: NormalField,
+    weights: Weights,
+    degree: f64,
+    /// No |N| is above this.
+    most: f64,
+    longest: f64,
+    shortest: f64,
+    /// Least lower bound among the settled cells.
+    lower: f64,
+    open: BinaryHeap<Cell>,
+}
+
+impl Search {
+    fn first(&mut self, grid: &Grid) {
+        let step = std::f64::consts::PI / grid.half as f64;
+        for i in 0..grid.half {
+            for j in 0..2 * grid.half {
+                let at = |a: usize, b: usize| grid.padded[(i + a) * grid.stride + j + b];
+                self.settle(step * i as f64, step * j as f64, step, &at);
+            }
+        }
+    }
+
+    /// Settles a cell from N on its stencil, or keeps it open.
+    fn settle(
+        &mut self,
+        theta: f64,
+        phi: f64,
+        step: f64,
+        at: &impl Fn(usize, usize) -> Vector3<f64>,
+    ) {
+        let lower = self.bound(step, at);
+        if lower > SHARE * self.shortest {
+            self.lower = self.lower.min(lower);
+        } else {
+            // In the order of `corners`.
+            let offsets = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
+            let lengths = corners(at).map(|n| n.norm());
+            let ends = lengths.into_iter().zip(offsets);
+            let least = ends.min_by(|a, b| a.0.total_cmp(&b.0));
+            let (shortest, (a, b)) = least.unwrap_or((0.0, (0.0, 0.0)));
+            self.open.push(Cell {
+                theta,
+                phi,
+                step,
+                shortest,
+                at: direction(theta + a * step, phi + b * step),
+            });
+        }
+    }
+
+    /// A lower bound of |N| over a cell; not positive where it says nothing.
+    fn bound(&self, step: f64, at: &impl Fn(usize, usize) -> Vector3<f64>) -> f64 {
+        let corners = corners(at);
+        let Some(along) = corners.iter().sum::<Vector3<f64>>().try_normalize(0.0) else {
+            return 0.0;
+        };
+        let [a, b, c, d] = corners.map(|n| n.dot(&along));
+        let remainder = (1.0 + self.weights.sum()) * REMAINDER * self.most;
+        let error = remainder * (self.degree * step).powi(STENCIL as i32) + ROUNDING * self.longest;
+        let mut lower = a.min(b).min(c).min(d) - error;
+        for i in 0..STENCIL {
+            let t = i as f64 - CORNER as f64;
+            for j in 0..STENCIL {
+                let u = j as f64 - CORNER as f64;
+                let bilinear = a + t * (b - a) + u * (c - a) + t * u * (a - b - c + d);
+                let missed = at(i, j).dot(&along) - bilinear;
+                lower -= self.weights.0[i] * self.weights.0[j] * missed.abs();
+            }
+            if lower <= 0.0 {
+                break;
+            }
+        }
+        lower
+    }
+
+    /// Quarters open cells until there are none.
+    fn run(mut self) -> Result<Immersion, SphericalError> {
+        let mut cells = 0;
+        while let Some(cell) = self.open.pop() {
+            self.shortest = self.shortest.min(cell.shortest);
+            let p = cell.at;
+            if cell.shortest <= VANISHING * self.longest {
+                return Err(SphericalError::NotImmersed {
+                    seen: cell.shortest,
+                    x: p.x,
+                    y: p.y,
+                    z: p.z,
+                    largest: self.longest,
+                });
+            }
+            if cells >= MOST_CELLS {
+                return Err(SphericalError::Undecided {
+                    seen: self.shortest,
+                    x: p.x,
+                    y: p.y,
+                    z: p.z,
+                    largest: self.longest,
+                    open: self.open.len() + 1,
+                    cells,
+                });
+            }
+            cells += 1;
+            self.quarter(&cell);
+        }
+        Ok(Immersion {
+            lower: self.lower,
+            seen_lower: self.shortest,
+            seen_upper: self.longest,
         })
     }
 
-    fn values(&self, field: &[Coefficients; 3]) -> Vec<Vector3<f64>> {
-        let [x, y, z] = field.each_ref().map(|c| self.grid.synthesis(c).values);
-        (0..x.len())
-            .map(|i| Vector3::new(x[i], y[i], z[i]))
-            .collect()
+    fn quarter(&mut self, cell: &Cell) {
+        const WIDE: usize = STENCIL + 1;
+        let step = 0.5 * cell.step;
+        let angle = |start: f64, k: usize| start + step * (k as f64 - CORNER as f64);
+        let patch: Vec<Vector3<f64>> = (0..WIDE * WIDE)
+            .map(|k| {
+                let p = direction(angle(cell.theta, k / WIDE), angle(cell.phi, k % WIDE));
+                self.field.at(&p)
+            })
+            .collect();
+        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let at = |a: usize, b: usize| patch[(a + i) * WIDE + b + j];
+            let (theta, phi) = (cell.theta + step * i as f64, cell.phi + step * j as f64);
+            self.settle(theta, phi, step, &at);
+        }
     }
 }
 
-/// N·W on a grid.
-fn products(normals: &[Vector3<f64>], multiplier: &[Coefficients; 3], grid: &RingGrid) -> Vec<f64> {
-    let [x, y, z] = multiplier.each_ref().map(|w| grid.synthesis(w).values);
-    let product = |(i, n): (usize, &Vector3<f64>)| n.x * x[i] + n.y * y[i] + n.z * z[i];
-    normals.iter().enumerate().map(product).collect()
+/// N at (0,0), (1,0), (0,1), (1,1) of the cell.
+fn corners(at: &impl Fn(usize, usize) -> Vector3<f64>) -> [Vector3<f64>; 4] {
+    let k = CORNER;
+    [at(k, k), at(k + 1, k), at(k, k + 1), at(k + 1, k + 1)]
 }
 
-fn extremes(values: &[f64]) -> (f64, f64) {
-    let start = (f64::INFINITY, f64::NEG_INFINITY);
-    values
-        .iter()
-        .fold(start, |(low, high), v| (low.min(*v), high.max(*v)))
-}
-
-fn direction(grid: &RingGrid, index: usize) -> Direction {
-    let (sin, cos) = grid.rings()[index / grid.longitudes()];
-    let turn = (index % grid.longitudes()) as f64 / grid.longitudes() as f64;
-    SphericalCoords {
-        theta: sin.atan2(cos),
-        phi: std::f64::consts::TAU * turn,
-    }
-    .direction()
+/// The point of the sphere at any θ, also beyond the poles.
+fn direction(theta: f64, phi: f64) -> Direction {
+    SphericalCoords { theta, phi }.direction()
 }

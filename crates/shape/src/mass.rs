@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use sph::Coefficients;
 use sph::grid::RingGrid;
 
-use crate::immersion::normals;
+use crate::normals::normals;
 
 /// Mass properties at unit density, in the frame of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

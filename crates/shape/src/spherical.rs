@@ -6,6 +6,7 @@ use sph::{Basis, Coefficients, Direction, Jet};
 
 use crate::immersion::{self, Immersion, SphericalError};
 use crate::mass::{self, MassProperties};
+use crate::normals::grid_directions;
 use crate::radial::RadialShape;
 use crate::surface::{Differential, Surface};
 use crate::triangle_mesh::TriangleMesh;
@@ -25,7 +26,7 @@ pub struct SphericalShape {
 impl SphericalShape {
     /// Proves that f_u × f_v vanishes nowhere ([`Immersion`]) and computes the mass properties.
     ///
-    /// Degrees may differ; all are filled up to the highest. Costs about 4,000 L³ flops.
+    /// Degrees may differ; all are filled up to the highest. Less than a second at L = 50.
     pub fn new(x: Coefficients, y: Coefficients, z: Coefficients) -> Result<Self, SphericalError> {
         let degree = x.degree().max(y.degree()).max(z.degree());
         let coordinates = [x, y, z].map(|c| c.with_degree(degree));
@@ -50,7 +51,7 @@ impl SphericalShape {
         let degree = shape.degree() + 1;
         let grid = RingGrid::gauss_legendre(degree + 1, 2 * degree + 1);
         let radii = grid.synthesis(shape.coefficients());
-        let directions = immersion::grid_directions(&grid);
+        let directions = grid_directions(&grid);
         let [x, y, z] = std::array::from_fn(|axis| {
             let values = radii.values.iter().zip(&directions);
             let values = GridValues {

@@ -1,17 +1,18 @@
 //! Is a cloud star-shaped from a centre? Where it is seen twice, and where not at all.
 
-use nalgebra::{SMatrix, SVector, Vector3};
 use sph::Direction;
-use sph::direction::{retract, tangent_frame};
 
+use crate::cells::Cells;
+use crate::patch::{Patch, members};
 use crate::point_cloud::RadialSamples;
+use crate::vessel::{Opening, opening};
 
-/// Points a cell should hold, on the sphere's average, to look for two sheets in it.
-const POINTS_PER_CELL: usize = 96;
-/// Points a cell must hold before anything is said about it.
-const LEAST_POINTS: usize = 24;
-/// Points a coarser cell should hold, on average; an empty one is then no accident.
-const POINTS_PER_VIEW: usize = 160;
+/// Cells in which two sheets are looked for: small enough for a quadratic to follow the surface.
+const CELLS: usize = 150;
+/// Points a cell should hold, on the sphere's average, in sparse and in dense clouds.
+const POINTS_PER_CELL: (usize, usize) = (32, 96);
+/// A cell with less than this share of them says nothing.
+const LEAST_FILLED: f64 = 0.25;
 /// Share of the scatter that two sheets must explain. Two halves of a normal distribution explain
 /// 0.64 of it, of a uniform one 0.75.
 const TWO_SHEETS: f64 = 0.8;
@@ -42,22 +43,21 @@ pub struct StarShape {
     pub crossings: Vec<Crossing>,
     /// Centres of the cells without points.
     pub unseen_directions: Vec<Direction>,
+    /// The widest opening, if there is one.
+    pub opening: Option<Opening>,
 }
 
 /// Looks for two sheets and for holes, cell by cell.
 ///
-/// In each of N/96 cells of equal area the radii are freed from slope and curvature (a quadratic
-/// over the cell) and split in two where the split explains most of what is left. Noise has one
-/// heap and is explained badly, two walls have two heaps; a steep wall is no crossing, since the
-/// quadratic takes its slope. Costs about 100 flops a point.
+/// In each of some hundred cells of equal area the radii are freed from slope and curvature (a
+/// quadratic over the cell) and split in two where the split explains most of what is left. Noise has
+/// one heap and is explained badly, two walls have two heaps; a steep wall is no crossing, since the
+/// quadratic takes its slope. Costs about 100 flops a point, and 600 where there is an opening.
 pub fn star_shape(samples: &RadialSamples) -> StarShape {
     let count = samples.radii.len();
-    let cells = Cells::new(count / POINTS_PER_CELL);
-    let mut members: Vec<Vec<usize>> = vec![Vec::new(); cells.count()];
-    for (i, p) in samples.directions.iter().enumerate() {
-        members[cells.index(p)].push(i);
-    }
-    members.retain(|m| m.len() >= LEAST_POINTS);
+    let filled = (count / CELLS).clamp(POINTS_PER_CELL.0, POINTS_PER_CELL.1);
+    let mut members = members(&Cells::new(count / filled), &samples.directions);
+    members.retain(|m| m.len() as f64 >= LEAST_FILLED * filled as f64);
     let mut crossings: Vec<Crossing> = members
         .iter()
         .filter_map(|members| crossing(samples, members))
@@ -77,50 +77,25 @@ pub fn star_shape(samples: &RadialSamples) -> StarShape {
         multiple: crossings.len() as f64 / members.len().max(1) as f64,
         unseen: unseen_directions.len() as f64 / views.count() as f64,
         crossings,
+        opening: opening(samples),
         unseen_directions,
     }
 }
 
 /// Two heaps among the radii of one cell, if there are.
 fn crossing(samples: &RadialSamples, members: &[usize]) -> Option<Crossing> {
-    let sum: Vector3<f64> = members.iter().map(|i| *samples.directions[*i]).sum();
-    let middle = Direction::new_normalize(sum);
-    let mut rest = without_trend(samples, members, &middle)?;
+    let patch = Patch::new(samples, members)?;
+    let radii = members.iter().map(|i| samples.radii[*i]);
+    let mut rest: Vec<(f64, f64)> = patch.rest.iter().copied().zip(radii).collect();
     rest.sort_by(|a, b| a.0.total_cmp(&b.0));
     let split = best_split(&rest)?;
     let mean = |part: &[(f64, f64)]| part.iter().map(|x| x.1).sum::<f64>() / part.len() as f64;
     let (inner, outer) = (mean(&rest[..split]), mean(&rest[split..]));
     (outer - inner >= LEAST_GAP * outer).then_some(Crossing {
-        direction: middle,
+        direction: patch.middle,
         inner,
         outer,
     })
-}
-
-/// (radius − quadratic over the cell, radius) of each member.
-fn without_trend(
-    samples: &RadialSamples,
-    members: &[usize],
-    middle: &Direction,
-) -> Option<Vec<(f64, f64)>> {
-    let (e1, e2) = tangent_frame(middle);
-    let row = |i: usize| {
-        let p = &samples.directions[i];
-        let (u, v) = (p.dot(&e1), p.dot(&e2));
-        SVector::<f64, 6>::new(1.0, u, v, u * u, u * v, v * v)
-    };
-    let mut gram = SMatrix::<f64, 6, 6>::zeros();
-    let mut right = SVector::<f64, 6>::zeros();
-    for &i in members {
-        let row = row(i);
-        gram += row * row.transpose();
-        right += row * samples.radii[i];
-    }
-    // A whiff of ridge keeps points on one line solvable.
-    gram += SMatrix::identity() * (1e-9 * gram.trace());
-    let trend = gram.cholesky()?.solve(&right);
-    let rest = |&i: &usize| (samples.radii[i] - row(i).dot(&trend), samples.radii[i]);
-    Some(members.iter().map(rest).collect())
 }
 
 /// Where to cut a sorted list in two so that the halves' means explain most of the variance (Otsu
@@ -146,102 +121,10 @@ fn best_split(sorted: &[(f64, f64)]) -> Option<usize> {
     (best.0 >= TWO_SHEETS * scatter && scatter > 0.0).then_some(best.1)
 }
 
-/// Cells of nearly equal area: bands of latitude, each cut into sectors.
-pub(crate) struct Cells {
-    /// Index of each band's first cell, and at the end the number of cells.
-    starts: Vec<usize>,
-}
-
-impl Cells {
-    /// About `count` cells, at least 8.
-    pub(crate) fn new(count: usize) -> Self {
-        let bands = ((count.max(8) as f64 * std::f64::consts::PI).sqrt() / 2.0).round() as usize;
-        let height = std::f64::consts::PI / bands as f64;
-        let mut starts = vec![0];
-        for band in 0..bands {
-            let sine = ((band as f64 + 0.5) * height).sin();
-            let sectors = (std::f64::consts::TAU * sine / height).round().max(1.0) as usize;
-            starts.push(starts[band] + sectors);
-        }
-        Self { starts }
-    }
-
-    /// Cells coarse enough for an empty one to mean that nothing was seen there.
-    pub(crate) fn for_views(points: usize) -> Self {
-        Self::new(points / POINTS_PER_VIEW)
-    }
-
-    /// The cells that share an edge with a cell, from points just outside its four sides.
-    pub(crate) fn neighbours(&self, cell: usize) -> Vec<usize> {
-        let step = std::f64::consts::PI / self.bands() as f64;
-        let p = self.centre(cell);
-        let (north, east) = compass(&p);
-        let mut around: Vec<usize> = [north, -north, east, -east]
-            .iter()
-            .map(|v| self.index(&retract(&p, &(v * step))))
-            .filter(|k| *k != cell)
-            .collect();
-        around.dedup();
-        around
-    }
-
-    /// How many there are.
-    pub(crate) fn count(&self) -> usize {
-        self.starts[self.bands()]
-    }
-
-    fn bands(&self) -> usize {
-        self.starts.len() - 1
-    }
-
-    /// The cell of a direction.
-    pub(crate) fn index(&self, p: &Direction) -> usize {
-        let part = |x: f64, n: usize| ((x * n as f64).max(0.0) as usize).min(n - 1);
-        let theta = p.x.hypot(p.y).atan2(p.z);
-        let band = part(theta / std::f64::consts::PI, self.bands());
-        let turn = p.y.atan2(p.x) / std::f64::consts::TAU + 0.5;
-        self.starts[band] + part(turn, self.starts[band + 1] - self.starts[band])
-    }
-
-    /// A direction in the middle of a cell.
-    pub(crate) fn centre(&self, cell: usize) -> Direction {
-        let band = self.starts.partition_point(|start| *start <= cell) - 1;
-        let sectors = self.starts[band + 1] - self.starts[band];
-        let theta = std::f64::consts::PI * (band as f64 + 0.5) / self.bands() as f64;
-        let turn = ((cell - self.starts[band]) as f64 + 0.5) / sectors as f64 - 0.5;
-        let phi = std::f64::consts::TAU * turn;
-        sph::SphericalCoords { theta, phi }.direction()
-    }
-}
-
-/// Unit tangents towards larger z and along increasing azimuth; any two at the poles.
-fn compass(p: &Direction) -> (Vector3<f64>, Vector3<f64>) {
-    let up = Vector3::z() - p.into_inner() * p.z;
-    match up.try_normalize(1e-9) {
-        Some(north) => (north, north.cross(p)),
-        None => tangent_frame(p),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use sph::direction::even_directions;
-
-    #[test]
-    fn every_cell_holds_its_centre_and_its_share() {
-        for count in [8, 30, 500] {
-            let cells = Cells::new(count);
-            let mut hits = vec![0_usize; cells.count()];
-            for p in even_directions(100 * cells.count()) {
-                hits[cells.index(&p)] += 1;
-            }
-            assert!(hits.iter().all(|h| (30..300).contains(h)), "{hits:?}");
-            for cell in 0..cells.count() {
-                assert_eq!(cells.index(&cells.centre(cell)), cell);
-            }
-        }
-    }
 
     fn wavy_noise(i: usize) -> f64 {
         // Sum of four uniform numbers: close to normal, deviation 0.58.

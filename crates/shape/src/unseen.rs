@@ -2,8 +2,8 @@
 
 use sph::Direction;
 
+use crate::cells::Cells;
 use crate::point_cloud::RadialSamples;
-use crate::star::Cells;
 
 /// Sweeps of Gauss and Seidel; holes are a few dozen cells wide at most.
 const SWEEPS: usize = 200;

@@ -2,18 +2,17 @@
 
 mod common;
 
-use common::{cloud, index, objects};
+use common::{cloud, index, noisy, objects, shuffled};
 use nalgebra::{DMatrix, DVector, Point3, Vector3};
-use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, Normal};
-use shape::fit::{Fit, FitError, FitSettings, MOST_MULTIPLE, fit};
+use shape::fit::{Fit, FitError, FitSettings, fit};
 use shape::point_cloud::RadialSamples;
-use shape::{PointCloud, star_shape};
+use shape::{PointCloud, Surface, star_shape};
+use sph::direction::even_directions;
 use sph::grid::RingGrid;
 use sph::regression::{Penalty, Samples, gram};
-use sph::{Coefficients, batch};
+use sph::{Coefficients, Direction, batch};
 
 const SETTINGS: FitSettings = FitSettings {
     degree: 50,
@@ -43,8 +42,7 @@ fn positive_on_a_grid(beta: &Coefficients) -> bool {
 
 /// A random half of a cloud, and the rest.
 fn halves(cloud: &PointCloud, seed: u64) -> (PointCloud, PointCloud) {
-    let mut points = cloud.points().to_vec();
-    points.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));
+    let mut points = shuffled(cloud, seed);
     let rest = points.split_off(points.len() / 2);
     (
         PointCloud::new(points).unwrap(),
@@ -120,38 +118,19 @@ fn the_measure_tells_open_vessels_from_scans() {
     }
 }
 
-/// The cloud with normal noise of a deviation in metres on every coordinate.
-fn noisy(cloud: &PointCloud, sigma: f64) -> PointCloud {
-    let mut rng = ChaCha8Rng::seed_from_u64(5);
-    let normal = Normal::new(0.0, sigma).unwrap();
-    let mut move_by = || Vector3::from_fn(|_, _| normal.sample(&mut rng));
-    let points = cloud.points().iter().map(|p| p + move_by()).collect();
-    PointCloud::new(points).unwrap()
-}
-
-#[test]
-fn noise_neither_hides_a_mug_nor_makes_one() {
-    for name in ["mug", "sugar_box", "toy_cat", "spray_flask"] {
-        let Some(cloud) = cloud(name) else { return };
-        for sigma in [5e-4, 1e-3, 2e-3] {
-            let cloud = noisy(&cloud, sigma);
-            let star = star_shape(&cloud.seen_from(&cloud.mean()));
-            let refused = star.multiple > MOST_MULTIPLE;
-            assert_eq!(refused, name == "mug", "{name} {sigma}: {}", star.multiple);
-        }
-    }
-}
-
 #[test]
 fn hard_objects_are_certified_or_refused() {
     for entry in index().iter().filter(|e| e.class == "hard") {
         let name = entry.name.as_str();
         let cloud = cloud(name).unwrap();
         match (name, fit(&cloud, &SETTINGS)) {
-            ("mug" | "bowl", Err(FitError::NotStarShaped { star, worst })) => {
-                assert!(worst.inner < worst.outer && star.multiple > 0.2);
-                let text = FitError::NotStarShaped { star, worst }.to_string();
+            ("mug" | "bowl", Err(error)) => {
+                let text = error.to_string();
                 assert!(text.contains("not star-shaped"), "{text}");
+                let FitError::NotStarShaped { star, worst, limit } = error else {
+                    panic!("{name}: {text}");
+                };
+                assert!(worst.inner < worst.outer && star.multiple > limit);
             }
             ("mug" | "bowl", other) => panic!("{name}: {other:?}"),
             (_, Ok(fit)) => {
@@ -162,6 +141,23 @@ fn hard_objects_are_certified_or_refused() {
     }
 }
 
+/// Root mean square distance of points from a surface, metres: residual times cosine of incidence.
+fn rms_distance(fit: &Fit, samples: &RadialSamples) -> f64 {
+    let radii = fit.shape.radii(&samples.directions);
+    let seen = samples
+        .directions
+        .iter()
+        .zip(radii.iter().zip(&samples.radii));
+    let square =
+        |(p, (f, r)): (&Direction, (&f64, &f64))| ((f - r) * fit.shape.contact(p).1.dot(p)).powi(2);
+    (seen.map(square).sum::<f64>() / samples.radii.len() as f64).sqrt()
+}
+
+/// "As well as the clean box, to 1 mm RMS", in every reading that the scan allows.
+///
+/// The scan has 0.5 mm of normal noise besides its outliers. Seen along a ray that meets the surface at
+/// an angle this is 0.5 mm / cos, 1.1 mm RMS over the box: no surface, not even the clean box itself,
+/// has less on these points.
 #[test]
 fn outliers_do_not_move_the_sugar_box() {
     let (Some(root), Some(dirty), Some(clean)) =
@@ -170,37 +166,43 @@ fn outliers_do_not_move_the_sugar_box() {
         return;
     };
     let list = std::fs::read_to_string(root.join("sugar_box_outliers.outlier_rows.txt")).unwrap();
-    let planted: Vec<usize> = list
-        .split_whitespace()
-        .map(|w| w.parse().unwrap())
-        .collect();
-    let found = fit(&dirty, &SETTINGS).unwrap();
     let mut is_planted = vec![false; dirty.points().len()];
-    planted.iter().for_each(|i| is_planted[*i] = true);
-    let good = |i: &usize| !is_planted[*i];
-    let points = (0..is_planted.len())
-        .filter(good)
-        .map(|i| dirty.points()[i]);
-    let points = PointCloud::new(points.collect()).unwrap();
-    let ours = rms(
-        found.shape.coefficients(),
-        &points.seen_from(&found.centre_in_cloud),
-    );
-    let reference = fit(&clean, &SETTINGS).unwrap().rms;
+    for row in list.split_whitespace() {
+        is_planted[row.parse::<usize>().unwrap()] = true;
+    }
+    let planted = is_planted.iter().filter(|x| **x).count();
+    let good = dirty.points().iter().zip(&is_planted);
+    let good = good.filter(|(_, planted)| !**planted).map(|(p, _)| *p);
+    let good = PointCloud::new(good.collect()).unwrap();
+    let seen = |cloud: &PointCloud, fit: &Fit| cloud.seen_from(&fit.centre_in_cloud);
+    let error = |fit: &Fit, cloud: &PointCloud| rms(fit.shape.coefficients(), &seen(cloud, fit));
+
+    let found = fit(&dirty, &SETTINGS).unwrap();
+    let reference = fit(&clean, &SETTINGS).unwrap();
+    let told = fit(&good, &SETTINGS).unwrap();
+    assert!(told.outliers.is_empty());
     let hits = found.outliers.iter().filter(|i| is_planted[**i]).count();
-    assert!(
-        ours <= reference + 1e-3,
-        "{ours:.2e} against {reference:.2e}"
-    );
-    assert!(hits * 10 >= planted.len() * 9 && found.outliers.len() - hits <= 20);
-    // What is left is the half millimetre of noise on the clean points.
-    let alone = fit(&points, &SETTINGS).unwrap();
-    assert!(
-        ours <= 1.02 * alone.rms,
-        "{ours:.2e} against {:.2e}",
-        alone.rms
-    );
-    assert!(alone.outliers.is_empty());
+    assert!(hits * 10 >= planted * 9 && found.outliers.len() - hits <= 20);
+
+    // On the points of the clean box; and on its own clean points, against the clean box's own error
+    // on its own, against being told the outliers, and against the clean box's surface.
+    let on_the_clean_box = error(&found, &clean);
+    assert!(on_the_clean_box <= 0.7e-3, "{on_the_clean_box:.2e}");
+    let ours = error(&found, &good);
+    assert!(ours <= reference.rms + 1e-3, "{ours:.2e}");
+    assert!(ours <= 1.02 * told.rms, "{ours:.2e} {:.2e}", told.rms);
+    let least = error(&reference, &good);
+    assert!(least > 1e-3 && ours <= least, "{ours:.2e} {least:.2e}");
+    // Across the surface there is the noise and nothing else.
+    let distance = rms_distance(&found, &seen(&good, &found));
+    assert!(distance <= 0.56e-3, "{distance:.2e}");
+    // The two surfaces, each seen from its own centre.
+    let shift = found.centre_in_cloud - reference.centre_in_cloud;
+    let surface = even_directions(5000);
+    let surface = surface.iter().map(|p| found.shape.point(p) + shift);
+    let surface = PointCloud::new(surface.collect()).unwrap();
+    let apart = rms_distance(&reference, &surface.seen_from(&Point3::origin()));
+    assert!(apart <= 0.4e-3, "{apart:.2e}");
 }
 
 #[test]

@@ -8,8 +8,9 @@ use std::error::Error;
 use std::time::Instant;
 
 use nalgebra::Vector3;
+use sph::Direction;
 use sph::regression::{Fitted, Penalty, Robust, Samples, Settings, fit};
-use sph::{Direction, batch};
+use sph::scattered::Scattered;
 
 fn load(file: &str) -> Result<(Vec<Direction>, Vec<f64>), Box<dyn Error>> {
     let bytes = std::fs::read(file)?;
@@ -49,7 +50,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         seconds.sort_by(f64::total_cmp);
         let fitted = last.ok_or("no run")?;
-        let squares: f64 = batch::evaluate(&fitted.coefficients, &directions)
+        let squares: f64 = Scattered::new(&directions)
+            .evaluate(&fitted.coefficients)
             .iter()
             .zip(&values)
             .map(|(h, f)| (h - f).powi(2))

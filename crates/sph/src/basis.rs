@@ -10,12 +10,12 @@ use crate::legendre::{Azimuth, Legendre, derivative_factor};
 /// The highest degree the recurrences are tested for.
 pub const MAX_DEGREE: usize = 300;
 
-/// Value and tangential gradient of one harmonic.
+/// Value and tangential gradient of one harmonic, or of a sum of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Harmonic {
-    /// Y_{l,m}(p).
+    /// Y_{l,m}(p), or f(p).
     pub value: f64,
-    /// ∇_S Y_{l,m}(p), a vector of R³ tangent to the sphere at p.
+    /// ∇_S Y_{l,m}(p), or ∇_S f(p): a vector of R³ tangent to the sphere at p.
     pub gradient: Vector3<f64>,
 }
 
@@ -252,11 +252,11 @@ impl OrderSums {
 }
 
 /// Value, gradient and Hessian of the polynomial extension in R³.
-#[derive(Default)]
-struct Ambient {
-    value: f64,
-    gradient: Vector3<f64>,
-    hessian: Matrix3<f64>,
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Ambient {
+    pub(crate) value: f64,
+    pub(crate) gradient: Vector3<f64>,
+    pub(crate) hessian: Matrix3<f64>,
 }
 
 impl Ambient {
@@ -292,7 +292,7 @@ impl Ambient {
         self.hessian += Matrix3::new(xx, xy, xz, xy, -xx, yz, xz, yz, zz);
     }
 
-    fn jet(&self, p: &Direction) -> Jet {
+    pub(crate) fn jet(&self, p: &Direction) -> Jet {
         let normal = p.into_inner();
         let tangent = Matrix3::identity() - normal * normal.transpose();
         let inner = self.hessian - Matrix3::identity() * normal.dot(&self.gradient);

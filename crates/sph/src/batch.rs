@@ -3,7 +3,12 @@
 //! Both sums run the recurrences of [`crate::basis`] on lanes of points; tests compare them with
 //! the plain path. The order of additions is fixed, so results do not depend on threads.
 
+mod jets;
+
 use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+pub use jets::{jets, values_and_gradients};
 
 use crate::coefficients::Coefficients;
 use crate::direction::Direction;
@@ -14,16 +19,23 @@ use crate::legendre::Legendre;
 const LANES: usize = 16;
 type Lane = [f64; LANES];
 
+/// Points of one task of [`evaluate`].
+const CHUNK: usize = 256;
+
 /// f(pᵢ) = Σ β_{lm} Y_{lm}(pᵢ) for all i. About 4 L² flops a point.
 pub fn evaluate(beta: &Coefficients, directions: &[Direction]) -> Vec<f64> {
     let legendre = Legendre::new(beta.degree());
     let mut out = vec![0.0; directions.len()];
-    Arch::new().dispatch(Evaluate {
-        legendre: &legendre,
-        beta: beta.as_slice(),
-        directions,
-        out: &mut out,
-    });
+    out.par_chunks_mut(CHUNK)
+        .zip(directions.par_chunks(CHUNK))
+        .for_each(|(out, directions)| {
+            Arch::new().dispatch(Evaluate {
+                legendre: &legendre,
+                beta: beta.as_slice(),
+                directions,
+                out,
+            });
+        });
     out
 }
 

@@ -1,11 +1,10 @@
 //! Certified extrema: numbers that a function on the sphere provably stays between.
 
-use rayon::prelude::*;
-
+use crate::basis::Jet;
+use crate::batch;
 use crate::coefficients::Coefficients;
-use crate::direction::SphericalCoords;
+use crate::direction::{Direction, SphericalCoords};
 use crate::fft::smooth_length;
-use crate::field::Field;
 use crate::grid::RingGrid;
 
 /// An interval that contains every value of a function on the sphere, and the values seen on a grid.
@@ -55,7 +54,7 @@ fn seen_on_grid(beta: &Coefficients, oversampling: usize) -> Seen {
     let middle = 0.5 * (low + high);
     let half_angle = 0.5 * std::f64::consts::PI / oversampling as f64;
     let widening = half_angle.cos().powi(-2);
-    let rounding = 1e-13 * rounding_scale(beta);
+    let rounding = ROUNDING * rounding_scale(beta);
     let reach = 0.5 * (high - low) * widening + rounding;
     Seen {
         range: Range {
@@ -77,16 +76,18 @@ fn seen_on_grid(beta: &Coefficients, oversampling: usize) -> Seen {
 /// falls no lower than M cos(ψ + L d) within distance d (Szegő's form of Bernstein's inequality), and
 /// no lower than f − |∇f| d + λ d²/2 − M (L d)³/6, λ ≤ 0 the least curvature (Bernstein for the third
 /// derivative). Cells that neither settles are quartered, up to a limit of work; what is left open
-/// then widens the range, which stays certified. About 30 ms at L = 50.
+/// then widens the range, which stays certified. Values, gradients and Hessians are direct sums, so
+/// that rounding is their only error; it has the same margin as in [`certified_range`], twice, since
+/// gradients and Hessians have their share of it. About 30 ms at L = 50.
 pub fn tight_range(beta: &Coefficients, share: f64) -> Range {
     const OVERSAMPLING: usize = 8;
     let seen = seen_on_grid(beta, OVERSAMPLING);
     let range = seen.range;
     let middle = 0.5 * (range.lower + range.upper);
     let reach = 0.5 * (range.upper - range.lower);
-    let margin = FIELD_ERROR * rounding_scale(beta);
+    let margin = 2.0 * ROUNDING * rounding_scale(beta);
     let search = Search {
-        field: Field::new(beta, FIELD_ERROR),
+        beta,
         degree: beta.degree().max(1) as f64,
         middle,
         reach,
@@ -103,9 +104,9 @@ pub fn tight_range(beta: &Coefficients, share: f64) -> Range {
     }
 }
 
-/// Accuracy of the field that cells are judged by, in units of [`rounding_scale`]: far above every
-/// error seen in tests, but not proved. Membership in M^rad rests on [`certified_range`].
-const FIELD_ERROR: f64 = 1e-10;
+/// Margin for the rounding of a sum, in units of [`rounding_scale`]: some five hundred units in the
+/// last place of the largest value that the sum could have.
+const ROUNDING: f64 = 1e-13;
 
 /// Most cells looked at on one side.
 const MOST_CELLS: usize = 60_000;
@@ -118,15 +119,25 @@ struct Cell {
     half: f64,
 }
 
-struct Search {
-    field: Field,
+impl Cell {
+    fn centre(&self) -> Direction {
+        let coords = SphericalCoords {
+            theta: self.theta,
+            phi: self.phi,
+        };
+        coords.direction()
+    }
+}
+
+struct Search<'a> {
+    beta: &'a Coefficients,
     degree: f64,
     middle: f64,
     reach: f64,
     slack: f64,
 }
 
-impl Search {
+impl Search<'_> {
     /// Cells whose values alone do not settle the minimum, and the maximum.
     fn open_cells(&self, seen: &Seen) -> [Vec<Cell>; 2] {
         let theta_step = std::f64::consts::PI / (seen.rings - 1) as f64;
@@ -171,8 +182,12 @@ impl Search {
         let centre = sign * self.middle;
         while !open.is_empty() {
             work += open.len();
-            let judged: Vec<(f64, f64)> =
-                open.par_iter().map(|cell| self.judge(cell, sign)).collect();
+            let centres: Vec<Direction> = open.iter().map(Cell::centre).collect();
+            let judged: Vec<(f64, f64)> = batch::jets(self.beta, &centres)
+                .iter()
+                .zip(&open)
+                .map(|(jet, cell)| self.judge(cell, jet, sign))
+                .collect();
             best = judged
                 .iter()
                 .fold(best, |best, &(value, _)| best.min(value));
@@ -194,12 +209,7 @@ impl Search {
     }
 
     /// sign·f at the cell's centre and a lower bound of it on the cell.
-    fn judge(&self, cell: &Cell, sign: f64) -> (f64, f64) {
-        let coords = SphericalCoords {
-            theta: cell.theta,
-            phi: cell.phi,
-        };
-        let jet = self.field.jet(&coords.direction());
+    fn judge(&self, cell: &Cell, jet: &Jet, sign: f64) -> (f64, f64) {
         let value = sign * jet.value;
         let d = cell.half * std::f64::consts::SQRT_2;
         let turn = self.degree * d;

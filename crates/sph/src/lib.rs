@@ -15,6 +15,7 @@ pub mod coefficients;
 pub mod direction;
 mod fft;
 pub mod field;
+mod fused;
 pub mod grid;
 pub mod index;
 mod kernel;

@@ -3,10 +3,14 @@
 mod conjugate;
 mod dense;
 pub mod gram;
+mod lanczos;
+mod leverage;
 mod likelihood;
 mod operator;
 pub mod penalty;
+mod points;
 pub mod qr;
+mod refine;
 mod robust;
 
 use crate::coefficients::Coefficients;
@@ -31,7 +35,9 @@ pub enum Method {
     /// Cholesky for degrees up to 16; above, conjugate gradients, and Cholesky where they are slow.
     #[default]
     Automatic,
-    /// Preconditioned conjugate gradients on the Gram operator: O(L³) an iteration, no matrix.
+    /// Preconditioned conjugate gradients on the Gram operator: O(L³) an iteration, no matrix. Where
+    /// the matrix of harmonics has a condition beyond some thousands it gives up with
+    /// [`RegressionError::NotConverged`]; a factor still serves there.
     Conjugate,
     /// The dense factor of the Gram matrix: O(L⁶) flops, 16 (L+1)⁴ bytes.
     Cholesky,

@@ -2,56 +2,64 @@
 //!
 //! Same sums as [`crate::batch`], at a cost that hardly grows with the degree: the harmonics are
 //! summed on a grid of the doubled torus, and each point reads (or writes) its grid neighbours
-//! through a window. Bands of rows have one owner each and are merged in order, so results do not
-//! depend on the number of threads.
+//! through a window. Points are sorted by tiles, so that neighbours stay in the nearest cache. Bands
+//! of rows have one owner each and are merged in order, so results do not depend on the number of
+//! threads.
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::coefficients::Coefficients;
 use crate::direction::Direction;
+use crate::fused::multiply_add;
 use crate::index;
-use crate::kernel::TAPS;
+use crate::kernel::{TAPS, Taps};
 use crate::torus::{Torus, TorusGrid};
 
-/// Taps for sums to about 1e-14 of the largest value.
-const WIDTH: usize = 16;
-const OVERSAMPLING: f64 = 2.0;
-/// Points handled by one task.
+/// Points handled by one task of [`Scattered::evaluate`].
 const CHUNK: usize = 2048;
-/// Rows owned by one task.
-const BAND: usize = 24;
+/// Tiles from pole to pole; a power of two, so that a point's band follows from θ without rounding.
+const BANDS: usize = 64;
+/// Tiles around a band.
+const SECTORS: usize = 64;
+/// Fewest rows owned by one task: the rows of its windows beyond them are added twice.
+const OWNED_ROWS: usize = 24;
 
 /// Points of the sphere, prepared for repeated sums.
 #[derive(Clone, Debug)]
 pub struct Scattered {
-    /// (θ, φ) in turns around their circles, [0, ½] and [0, 1).
+    /// (θ, φ) in turns around their circles, [0, ½] and [0, 1), tile after tile.
     turns: Vec<[f64; 2]>,
-    /// Positions in the caller's list, by growing θ to the accuracy of a band.
+    /// Their positions in the caller's list.
     order: Vec<u32>,
+    /// Where each band of tiles begins, and the number of points.
+    bands: Vec<usize>,
 }
 
 impl Scattered {
     /// Angles of all points, and their order. At most 2³² points.
     pub fn new(directions: &[Direction]) -> Self {
         let angles: Vec<[f64; 2]> = directions.par_iter().map(turns).collect();
-        const BUCKETS: usize = 1024;
-        let bucket = |t: &[f64; 2]| ((t[0] * 2.0 * BUCKETS as f64) as usize).min(BUCKETS - 1);
-        let mut starts = vec![0_usize; BUCKETS + 1];
+        let mut starts = vec![0_usize; BANDS * SECTORS + 1];
         for t in &angles {
-            starts[bucket(t) + 1] += 1;
+            starts[tile(t) + 1] += 1;
         }
-        for b in 0..BUCKETS {
+        for b in 0..BANDS * SECTORS {
             starts[b + 1] += starts[b];
         }
+        let bands = starts.iter().step_by(SECTORS).copied().collect();
         let mut order = vec![0_u32; angles.len()];
         for (i, t) in angles.iter().enumerate() {
-            let slot = &mut starts[bucket(t)];
+            let slot = &mut starts[tile(t)];
             order[*slot] = i as u32;
             *slot += 1;
         }
-        let turns = order.iter().map(|&i| angles[i as usize]).collect();
-        Self { turns, order }
+        let turns = order.par_iter().map(|&i| angles[i as usize]).collect();
+        Self {
+            turns,
+            order,
+            bands,
+        }
     }
 
     /// Number of points.
@@ -66,9 +74,9 @@ impl Scattered {
 
     /// f(pᵢ) = Σ β_{lm} Y_{lm}(pᵢ), in the order of the points.
     ///
-    /// Errors are about 1e-14 of the largest |f|. About 600 flops a point and L³ for the grid.
+    /// Errors are about 1e-14 of the largest |f|. About 900 flops a point and L³ for the grid.
     pub fn evaluate(&self, beta: &Coefficients) -> Vec<f64> {
-        let torus = Torus::new(beta.degree(), WIDTH, OVERSAMPLING);
+        let torus = Torus::new(beta.degree());
         let grid = torus.synthesis(beta.as_slice());
         let mut sorted = vec![0.0; self.len()];
         sorted
@@ -94,43 +102,44 @@ impl Scattered {
     /// `weights` has one entry a point.
     pub fn moments(&self, weights: &[f64], degree: usize) -> Coefficients {
         assert_eq!(self.len(), weights.len(), "one weight a point");
-        let torus = Torus::new(degree, WIDTH, OVERSAMPLING);
-        let grid = self.spread(&torus, weights);
+        let torus = Torus::new(degree);
+        let grid = self.spread(&torus, &self.sorted(weights));
         let mut out = Coefficients::zeros(degree);
         out.as_mut_slice().copy_from_slice(&torus.analysis(grid));
         debug_assert_eq!(out.as_slice().len(), index::count(degree));
         out
     }
 
-    /// Every point's weight, spread over its grid neighbours.
+    /// Numbers in the order of the tiles: gathered beforehand, since a window would wait for each.
+    fn sorted(&self, weights: &[f64]) -> Vec<f64> {
+        let order = self.order.par_iter();
+        order.map(|&i| weights[i as usize]).collect()
+    }
+
+    /// Every point's weight, spread over its grid neighbours; weights in the order of the tiles.
     fn spread(&self, torus: &Torus, weights: &[f64]) -> TorusGrid {
-        let (stride, width, n) = (torus.stride(), torus.kernel().width(), torus.steps());
-        let owned = n / 2 + 1;
-        // First point of every band; the buckets of the order are not bands, so points are
-        // assigned one by one.
-        let mut bands: Vec<Vec<u32>> = vec![Vec::new(); owned.div_ceil(BAND)];
-        for (slot, t) in self.turns.iter().enumerate() {
-            bands[cell(t, n).0[0] / BAND].push(slot as u32);
-        }
-        let parts: Vec<Vec<f64>> = bands
-            .par_iter()
-            .enumerate()
-            .map(|(band, members)| {
-                let mut values = vec![0.0; (BAND + width) * stride];
+        let (stride, n) = (torus.stride(), torus.steps());
+        let group = (2 * BANDS * OWNED_ROWS).div_ceil(n).min(BANDS);
+        let row = |band: usize| band.min(BANDS) * n / (2 * BANDS);
+        let parts: Vec<Vec<f64>> = (0..BANDS.div_ceil(group))
+            .into_par_iter()
+            .map(|task| {
+                let (begin, end) = (task * group, ((task + 1) * group).min(BANDS));
+                let mut values = vec![0.0; (row(end) - row(begin) + 1 + TAPS) * stride];
+                let slots = self.bands[begin]..self.bands[end];
                 Arch::new().dispatch(Spread {
                     torus,
-                    points: self,
-                    members,
-                    weights,
-                    first: band * BAND,
+                    turns: &self.turns[slots.clone()],
+                    weights: &weights[slots],
+                    first: row(begin),
                     values: &mut values,
                 });
                 values
             })
             .collect();
         let mut values = vec![0.0; torus.rows() * stride];
-        for (band, part) in parts.iter().enumerate() {
-            let start = band * BAND * stride;
+        for (task, part) in parts.iter().enumerate() {
+            let start = row(task * group) * stride;
             for (sum, p) in values[start..].iter_mut().zip(part) {
                 *sum += p;
             }
@@ -146,18 +155,37 @@ fn turns(p: &Direction) -> [f64; 2] {
     [theta, if phi < 0.0 { phi + 1.0 } else { phi }]
 }
 
-/// Row and column of the grid point at or below a place on an n×n torus, and the way past it less ½.
-#[inline(always)]
-fn cell(turns: &[f64; 2], n: usize) -> ([usize; 2], [f64; 2]) {
-    let x = turns[0] * n as f64;
-    let y = turns[1] * n as f64;
-    // Rounding may bring φ to one whole turn; the last column then serves with u = ½.
-    let row = (x as usize).min(n / 2);
-    let column = (y as usize).min(n - 1);
-    (
-        [row, column],
-        [x - row as f64 - 0.5, y - column as f64 - 0.5],
-    )
+/// Number of a point's tile.
+fn tile(turns: &[f64; 2]) -> usize {
+    let band = ((turns[0] * (2 * BANDS) as f64) as usize).min(BANDS - 1);
+    let sector = ((turns[1] * SECTORS as f64) as usize).min(SECTORS - 1);
+    band * SECTORS + sector
+}
+
+/// Where a point's window lies on the grid, and its weights.
+struct Footprint {
+    row: usize,
+    column: usize,
+    theta: Taps,
+    phi: Taps,
+}
+
+impl Footprint {
+    #[inline(always)]
+    fn new<S: Simd>(torus: &Torus, turns: &[f64; 2]) -> Self {
+        let n = torus.steps();
+        let x = turns[0] * n as f64;
+        let y = turns[1] * n as f64;
+        // Rounding may bring φ to one whole turn; the last column then serves with u = ½.
+        let row = (x as usize).min(n / 2);
+        let column = (y as usize).min(n - 1);
+        Self {
+            row,
+            column,
+            theta: torus.kernel().weights::<S>(x - row as f64 - 0.5),
+            phi: torus.kernel().weights::<S>(y - column as f64 - 0.5),
+        }
+    }
 }
 
 struct Interpolate<'a> {
@@ -172,38 +200,33 @@ impl WithSimd for Interpolate<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
-        let (n, stride, width) = (
-            self.torus.steps(),
-            self.torus.stride(),
-            self.torus.kernel().width(),
-        );
+        let stride = self.torus.stride();
         for (turns, out) in self.turns.iter().zip(self.out) {
-            let ([row, column], [u, v]) = cell(turns, n);
-            let along_theta = self.torus.kernel().weights(u);
-            let along_phi = self.torus.kernel().weights(v);
+            let window = Footprint::new::<S>(self.torus, turns);
+            let start = window.row * stride + window.column;
+            let rows = self.grid.values[start..].chunks(stride);
             let mut sums = [0.0; TAPS];
-            for (tap, factor) in along_theta.iter().enumerate().take(width) {
-                let at = (row + tap) * stride + column;
-                let values = &self.grid.values[at..at + TAPS];
+            for (factor, values) in window.theta.iter().zip(rows) {
+                let values = &values[..TAPS];
                 for k in 0..TAPS {
-                    sums[k] += factor * values[k];
+                    sums[k] = multiply_add::<S>(*factor, values[k], sums[k]);
                 }
             }
             let mut total = 0.0;
             for k in 0..TAPS {
-                total += sums[k] * along_phi[k];
+                total += sums[k] * window.phi[k];
             }
             *out = total;
         }
     }
 }
 
+/// The adjoint of [`Interpolate`], onto the rows of one task.
 struct Spread<'a> {
     torus: &'a Torus,
-    points: &'a Scattered,
-    members: &'a [u32],
+    turns: &'a [[f64; 2]],
     weights: &'a [f64],
-    /// First row of the band.
+    /// First row of the task.
     first: usize,
     values: &'a mut [f64],
 }
@@ -213,25 +236,18 @@ impl WithSimd for Spread<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
-        let (n, stride, width) = (
-            self.torus.steps(),
-            self.torus.stride(),
-            self.torus.kernel().width(),
-        );
-        for &slot in self.members {
-            let slot = slot as usize;
-            let ([row, column], [u, v]) = cell(&self.points.turns[slot], n);
-            let along_theta = self.torus.kernel().weights(u);
-            let mut along_phi = self.torus.kernel().weights(v);
-            let weight = self.weights[self.points.order[slot] as usize];
-            for p in &mut along_phi {
+        let stride = self.torus.stride();
+        for (turns, weight) in self.turns.iter().zip(self.weights) {
+            let mut window = Footprint::new::<S>(self.torus, turns);
+            for p in &mut window.phi {
                 *p *= weight;
             }
-            for (tap, factor) in along_theta.iter().enumerate().take(width) {
-                let at = (row - self.first + tap) * stride + column;
-                let values = &mut self.values[at..at + TAPS];
+            let start = (window.row - self.first) * stride + window.column;
+            let rows = self.values[start..].chunks_mut(stride);
+            for (factor, values) in window.theta.iter().zip(rows) {
+                let values = &mut values[..TAPS];
                 for k in 0..TAPS {
-                    values[k] += factor * along_phi[k];
+                    values[k] = multiply_add::<S>(*factor, window.phi[k], values[k]);
                 }
             }
         }

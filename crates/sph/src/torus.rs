@@ -15,7 +15,7 @@ use self::passes::{
     AddDegrees, ModesFromRows, RingsFromRows, RowsFromModes, RowsFromRings, SumDegrees,
 };
 use crate::fft::{Complex, Fft, LANES, smooth_length};
-use crate::kernel::{Kernel, TAPS};
+use crate::kernel::{Kernel, OVERSAMPLING, REACH, TAPS};
 use crate::legendre::Legendre;
 use crate::rings::{OrderValues, Pairs, add_up, by_order, by_position, order_start};
 
@@ -26,7 +26,7 @@ pub(crate) struct TorusGrid {
     pub(crate) values: Vec<f64>,
 }
 
-/// Constants for one degree and window.
+/// Constants for one degree.
 #[derive(Clone, Debug)]
 pub(crate) struct Torus {
     degree: usize,
@@ -59,9 +59,9 @@ impl Modes {
 }
 
 impl Torus {
-    pub(crate) fn new(degree: usize, width: usize, oversampling: f64) -> Self {
-        let kernel = Kernel::new(width, oversampling);
-        let needed = (2 * degree + 1) as f64 * oversampling;
+    pub(crate) fn new(degree: usize) -> Self {
+        let kernel = Kernel::new();
+        let needed = (2 * degree + 1) as f64 * OVERSAMPLING;
         // A window must not meet itself around the circle.
         let fine = smooth_length((needed.ceil() as usize).max(2 * TAPS));
         let coarse = smooth_length(2 * degree + 2);
@@ -104,9 +104,9 @@ impl Torus {
         self.theta.length()
     }
 
-    /// Rows kept: θ from −reach to half the circle + width/2.
+    /// Rows kept: θ from −REACH to half the circle + TAPS/2.
     pub(crate) fn rows(&self) -> usize {
-        self.steps() / 2 + self.kernel.width()
+        self.steps() / 2 + TAPS
     }
 
     /// Words from one row to the next.
@@ -285,7 +285,7 @@ impl Torus {
     #[inline(always)]
     fn circle_position(&self, row: usize) -> usize {
         let n = self.steps();
-        (row + n - self.kernel.reach()) % n
+        (row + n - REACH) % n
     }
 
     /// Correction of θ mode k and order m.

@@ -9,7 +9,7 @@ use sph::grid::RingGrid;
 use sph::regression::{Gram, Method, Penalty, Samples, Settings, fit};
 use sph::rotation::rotate;
 use sph::scattered::Scattered;
-use sph::{Basis, Coefficients, Direction, Field, batch, index};
+use sph::{Basis, Coefficients, Direction, Field, Jet, batch, index};
 
 /// A function with the decay of a real surface: mean 1, β ~ 1/l².
 fn surface(degree: usize) -> Coefficients {
@@ -63,14 +63,12 @@ fn sums(degree: usize) -> [f64; 2] {
 }
 
 /// Worst errors of value, gradient and Hessian over the largest value, gradient and Hessian.
-fn field(degree: usize) -> [f64; 3] {
-    let beta = surface(degree);
-    let field = Field::new(&beta, 1e-11);
-    let basis = Basis::new(degree);
+fn jet_errors(beta: &Coefficients, points: &[Direction], found: &[Jet]) -> [f64; 3] {
+    let basis = Basis::new(beta.degree());
     let mut work = basis.workspace();
     let (mut errors, mut scales) = ([0.0_f64; 3], [0.0_f64; 3]);
-    for p in places() {
-        let (found, exact) = (field.jet(&p), basis.jet(&beta, &p, &mut work));
+    for (p, found) in points.iter().zip(found) {
+        let exact = basis.jet(beta, p, &mut work);
         let rows = [
             ((found.value - exact.value).abs(), exact.value.abs()),
             (
@@ -87,8 +85,23 @@ fn field(degree: usize) -> [f64; 3] {
     std::array::from_fn(|k| errors[k] / scales[k])
 }
 
+fn field(degree: usize) -> [f64; 3] {
+    let (beta, points) = (surface(degree), places());
+    let field = Field::new(&beta);
+    let found: Vec<Jet> = points.iter().map(|p| field.jet(p)).collect();
+    jet_errors(&beta, &points, &found)
+}
+
+/// A part of the places: the plain path takes its time.
+fn batched(degree: usize) -> [f64; 3] {
+    let beta = surface(degree);
+    let (spread, ends) = (places(), places().split_off(3000));
+    let points: Vec<Direction> = spread.into_iter().step_by(15).chain(ends).collect();
+    jet_errors(&beta, &points, &batch::jets(&beta, &points))
+}
+
 /// Distance of the fits by QR and by the Gram operator over the norm of β, noisy samples.
-fn regression(degree: usize, aspect: f64) -> f64 {
+fn regression(degree: usize, aspect: f64, method: Method) -> f64 {
     let count = 4 * index::count(degree);
     let directions: Vec<Direction> = even_directions(count)
         .iter()
@@ -117,7 +130,7 @@ fn regression(degree: usize, aspect: f64) -> f64 {
         fit(samples, &settings).unwrap().coefficients
     };
     let reference = by(Method::Qr);
-    by(Method::Conjugate).distance(&reference) / reference.distance(&Coefficients::zeros(0))
+    by(method).distance(&reference) / reference.distance(&Coefficients::zeros(0))
 }
 
 fn measured() -> BTreeMap<&'static str, f64> {
@@ -137,6 +150,12 @@ fn measured() -> BTreeMap<&'static str, f64> {
         "field Hessian, L = 50",
     ];
     rows.extend(names.into_iter().zip(field(50)));
+    let names = [
+        "batched values, L = 300",
+        "batched gradients, L = 300",
+        "batched Hessians, L = 300",
+    ];
+    rows.extend(names.into_iter().zip(batched(300)));
     let beta = surface(100);
     let norm = beta.distance(&Coefficients::zeros(0));
     let grid = RingGrid::gauss_legendre(101, 216);
@@ -148,8 +167,28 @@ fn measured() -> BTreeMap<&'static str, f64> {
     let turn = Rotation3::from_euler_angles(0.4, 1.9, -2.2);
     let back = rotate(&rotate(&beta, &turn), &turn.inverse());
     rows.insert("rotation and back, L = 100", back.distance(&beta) / norm);
-    rows.insert("fit against QR, L = 20, even samples", regression(20, 1.0));
-    rows.insert("fit against QR, L = 20, aspect 6", regression(20, 6.0));
+    rows.extend([
+        (
+            "fit against QR, L = 20, even samples",
+            regression(20, 1.0, Method::Conjugate),
+        ),
+        (
+            "fit against QR, L = 20, aspect 6",
+            regression(20, 6.0, Method::Conjugate),
+        ),
+        (
+            "fit against QR, L = 20, aspect 7",
+            regression(20, 7.0, Method::Automatic),
+        ),
+        (
+            "fit against QR, L = 20, aspect 9",
+            regression(20, 9.0, Method::Cholesky),
+        ),
+        (
+            "fit against QR, L = 30, aspect 3",
+            regression(30, 3.0, Method::Conjugate),
+        ),
+    ]);
     rows
 }
 

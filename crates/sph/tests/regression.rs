@@ -5,7 +5,7 @@ use sph::direction::even_directions;
 use sph::regression::{
     Gram, Method, Penalty, RegressionError, Robust, Samples, Settings, fit, gram, qr,
 };
-use sph::{Coefficients, Direction, batch};
+use sph::{Basis, Coefficients, Direction, batch};
 
 /// Directions of points spread by area over an ellipsoid of revolution: dense at the waist.
 fn elongated(count: usize, aspect: f64) -> Vec<Direction> {
@@ -279,4 +279,40 @@ fn the_covariance_inverts_the_normal_equations() {
             assert!((found - expected).abs() <= 1e-11);
         }
     }
+}
+
+#[test]
+fn leverage_is_the_diagonal_of_the_hat_matrix() {
+    let degree = 9;
+    let directions = elongated(700, 1.8);
+    let values = batch::evaluate(&truth(degree), &directions);
+    let samples = Samples {
+        directions: &directions,
+        values: &values,
+    };
+    let weights: Vec<f64> = (0..700).map(|i| 1.0 + 0.9 * f64::from(i).sin()).collect();
+    let penalty = Penalty {
+        lambda: 0.02,
+        power: 2,
+    };
+    let gram = Gram::weighted(samples, &weights, degree).unwrap();
+    let found = gram.leverage(samples, penalty).unwrap();
+    let covariance = gram.covariance(penalty).unwrap();
+    let basis = Basis::new(degree);
+    let mut work = basis.workspace();
+    let mut row = vec![0.0; basis.len()];
+    for ((p, weight), leverage) in directions.iter().zip(&weights).zip(&found) {
+        basis.values(p, &mut work, &mut row);
+        let mut expected = 0.0;
+        for (i, a) in row.iter().enumerate() {
+            for (j, b) in row.iter().enumerate() {
+                expected += weight * a * covariance[(i, j)] * b;
+            }
+        }
+        assert!((leverage - expected).abs() <= 1e-12);
+        assert!((0.0..=1.0).contains(leverage));
+    }
+    // Without a penalty the trace counts the coefficients.
+    let free = gram.leverage(samples, Penalty::NONE).unwrap();
+    assert!((free.iter().sum::<f64>() - 100.0).abs() <= 1e-9);
 }

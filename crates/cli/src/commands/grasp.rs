@@ -1,23 +1,26 @@
 //! `moduli grasp`: a cloud in, ranked grasps and a page out.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use moduli::Objective;
+use hand::Hand;
 use record::GraspsFile;
 use serde::Serialize;
 use shape::PointCloud;
 
 use crate::args::{Common, GraspOptions};
 use crate::failure::Failure;
-use crate::plan::synthesis::synthesize;
-use crate::plan::{Candidate, Target, library, page, ranking, reach, synthesis, transfer};
-use crate::{input, output};
+use crate::plan::synthesis::{Request, reasons, sentence, synthesize};
+use crate::plan::{
+    Candidate, Fitted, Target, library, ranking, reach, result, synthesis, transfer,
+};
+use crate::{hands, input, output};
 
 /// The built-in object that stands for "never seen before".
 const UNSEEN: &str = "U1";
-/// Rows of the table on standard output.
-const SHOWN: usize = 10;
+/// Grasps below this count as unstable (Sec. IV-E of the paper).
+const LEAST_QUALITY: f64 = 0.01;
 
 #[derive(Serialize)]
 struct GraspLine {
@@ -25,119 +28,150 @@ struct GraspLine {
     points: usize,
     r_min_certified_m: f64,
     r_max_certified_m: f64,
+    hand: String,
     neighbours: Vec<String>,
     transferred: usize,
     transferred_closed: usize,
     transferred_with_hand: usize,
+    /// Transferred grasps with another number of contacts than the hand has fingers.
+    transferred_of_other_count: usize,
     poses: usize,
     synthesized: usize,
+    rejected: BTreeMap<&'static str, usize>,
     grasps: usize,
     best: Option<f64>,
     contact_to_cloud_max_m: f64,
     convention: String,
     grasps_json: String,
+    grasps_yaml: String,
     index_html: String,
     seconds: f64,
 }
 
+/// Transferred grasps: all, and the kept ones with their hands.
+struct Carried {
+    all: usize,
+    closed: usize,
+    of_other_count: usize,
+    neighbours: Vec<String>,
+    kept: Vec<Candidate>,
+}
+
 pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure> {
     let start = Instant::now();
-    let (name, cloud) = object(options, common)?;
     let convention = input::convention(&options.convention)?;
-    let fit = input::fit(&cloud, &name, &options.fit)?;
-    let origin = nalgebra::Point3::from(-fit.centre_in_cloud.coords);
-    let objective = Objective::new(&convention, &fit.shape, &origin);
-    let target = Target {
-        name: &name,
-        fit: &fit,
-        convention: objective.convention().clone(),
-        centre: objective.centre(),
-    };
+    let hand = hands::load(&options.hand)?;
+    let (name, cloud) = object(options, common)?;
+    let points = cloud.points().len();
+    let fitted = Fitted::new(input::fit(&cloud, &name, &options.fit)?, points);
+    let target = Target::new(&name, &fitted, &convention);
 
-    let library = library::built_in()?;
-    let neighbours = transfer::neighbours(&target, &library, options.neighbours)?;
-    let bar = output::progress(common.quiet, 0, "transferring");
-    let transferred = transfer::candidates(&target, &neighbours, options.transfers, &bar)?;
-    bar.finish_and_clear();
-
-    let hand = hand::schunk_sdh().map_err(|e| Failure::other(format!("the built-in hand: {e}")))?;
+    let carried = carried(options, common, &target, &hand)?;
     let bar = output::progress(common.quiet, options.poses, "closing the hand");
-    let found = synthesize(&target, &hand, options.poses, common.seed, &bar)?;
+    let request = Request {
+        poses: options.poses,
+        preshapes: (0..hand.preshapes().len()).collect(),
+        least_quality: LEAST_QUALITY,
+        seed: common.seed,
+    };
+    let found = synthesize(&target, &hand, &request, &bar)?;
     bar.finish_and_clear();
 
-    let closed = transferred.iter().filter(|c| c.quality > 0.0).count();
-    let mut candidates = ranking::rank(transferred.clone());
-    candidates.truncate(options.keep);
-    let bar = output::progress(common.quiet, candidates.len(), "reaching contacts");
-    reach::give_hands(
-        &target,
-        &hand,
-        &mut candidates,
-        options.reach_starts,
-        common.seed,
-        &bar,
-    )?;
-    bar.finish_and_clear();
-    let reached = candidates.iter().filter(|c| c.hand.is_some()).count();
+    let reached = carried.kept.iter().filter(|c| c.hand.is_some()).count();
+    let mut candidates = carried.kept.clone();
     candidates.extend(synthesis::candidates(&found, options.keep));
     let ranked = ranking::rank(candidates);
-    let file = ranking::grasps_file(&target, &hand, &ranked);
-
     let folder = options
         .output
         .clone()
         .unwrap_or_else(|| PathBuf::from("out").join(&name));
-    let json_path = folder.join("grasps.json");
-    let page_path = folder.join("index.html");
-    let json = serde_json::to_vec_pretty(&file)
-        .map_err(|e| Failure::other(format!("cannot encode grasps.json: {e}")))?;
-    output::write_file(&json_path, &json)?;
-    let html = page::render(&target, &cloud, &hand, &ranked, &file)?;
-    output::write_file(&page_path, html.as_bytes())?;
+    let facts = vec![format!(
+        "Hand {}: {}.",
+        hand.name(),
+        sentence(&found.outcomes)
+    )];
+    let written = result::write(&folder, &target, Some(&cloud), &hand, &ranked, facts)?;
 
-    let (r_min, r_max) = fit.shape.radius_bounds();
+    let (r_min, r_max) = fitted.shape.radius_bounds();
     let line = GraspLine {
         object: name.clone(),
-        points: cloud.points().len(),
+        points,
         r_min_certified_m: r_min,
         r_max_certified_m: r_max,
-        neighbours: neighbours
-            .iter()
-            .map(|n| {
-                format!(
-                    "{} {} ({:.1} mm)",
-                    n.entry.id,
-                    n.entry.name,
-                    1e3 * n.distance
-                )
-            })
-            .collect(),
-        transferred: transferred.len(),
-        transferred_closed: closed,
+        hand: hand.name().to_owned(),
+        neighbours: carried.neighbours,
+        transferred: carried.all,
+        transferred_closed: carried.closed,
         transferred_with_hand: reached,
+        transferred_of_other_count: carried.of_other_count,
         poses: options.poses,
         synthesized: found.outcomes.stable,
+        rejected: reasons(&found.outcomes).into_iter().collect(),
         grasps: ranked.len(),
         best: ranked.first().map(|c| c.quality),
-        contact_to_cloud_max_m: farthest_contact(&ranked, &file, &cloud),
+        contact_to_cloud_max_m: farthest_contact(&written.file, &cloud),
         convention: target.convention.name.clone(),
-        grasps_json: json_path.display().to_string(),
-        index_html: page_path.display().to_string(),
+        grasps_json: written.grasps_json.display().to_string(),
+        grasps_yaml: written.grasps_yaml.display().to_string(),
+        index_html: written.index_html.display().to_string(),
         seconds: start.elapsed().as_secs_f64(),
     };
     if common.json {
         output::say_json(&line)?;
     } else {
-        print_table(&line, &file, &found.outcomes.by_reason());
+        line.say_found(&hand, &sentence(&found.outcomes));
+        written.print_table();
+        line.say_end();
+        written.print_paths();
     }
     if ranked.is_empty() {
         return Err(Failure::refused(format!(
-            "{name}: no force-closed grasp found; {} of {} poses rejected; try more --poses, more --neighbours or a higher --friction",
-            options.poses - found.outcomes.stable,
-            options.poses
+            "{name}: no force-closed grasp found; {}; more --poses or --neighbours may help",
+            synthesis::why_none(&found.outcomes, &hand)
         )));
     }
     Ok(())
+}
+
+/// Grasps of the nearest known objects on the target, the best with a hand where one reaches.
+fn carried(
+    options: &GraspOptions,
+    common: &Common,
+    target: &Target,
+    hand: &Hand,
+) -> Result<Carried, Failure> {
+    let library = library::built_in()?;
+    let neighbours = transfer::neighbours(target, &library, options.neighbours)?;
+    let bar = output::progress(common.quiet, 0, "transferring");
+    let all = transfer::candidates(target, &neighbours, options.transfers, &bar)?;
+    bar.finish_and_clear();
+    let fits = |c: &Candidate| c.contacts.len() == hand.fingers().len();
+    let closed = all.iter().filter(|c| c.quality > 0.0).count();
+    let counted = all.len();
+    let mut kept = ranking::rank(all);
+    kept.truncate(options.keep);
+    let of_other_count = kept.iter().filter(|c| !fits(c)).count();
+    if kept.iter().any(fits) {
+        let bar = output::progress(common.quiet, kept.len(), "reaching contacts");
+        let (starts, seed) = (options.reach_starts, common.seed);
+        reach::give_hands(target, hand, &mut kept, starts, seed, &bar)?;
+        bar.finish_and_clear();
+    }
+    let describe = |n: &transfer::Neighbour| {
+        format!(
+            "{} {} ({:.1} mm)",
+            n.entry.id,
+            n.entry.name,
+            1e3 * n.distance
+        )
+    };
+    Ok(Carried {
+        all: counted,
+        closed,
+        of_other_count,
+        neighbours: neighbours.iter().map(describe).collect(),
+        kept,
+    })
 }
 
 /// The cloud given, or the built-in unseen object.
@@ -156,8 +190,7 @@ fn object(options: &GraspOptions, common: &Common) -> Result<(String, PointCloud
 }
 
 /// Largest distance from a contact to the nearest point of the cloud, metres.
-fn farthest_contact(ranked: &[Candidate], file: &GraspsFile, cloud: &PointCloud) -> f64 {
-    debug_assert_eq!(ranked.len(), file.grasps.len());
+fn farthest_contact(file: &GraspsFile, cloud: &PointCloud) -> f64 {
     let contacts = file.grasps.iter().flat_map(|g| &g.contacts_m);
     contacts
         .map(|c| {
@@ -168,58 +201,40 @@ fn farthest_contact(ranked: &[Candidate], file: &GraspsFile, cloud: &PointCloud)
         .fold(0.0, f64::max)
 }
 
-fn print_table(line: &GraspLine, file: &GraspsFile, reasons: &[(&'static str, usize)]) {
-    output::say(format!(
-        "{}: {} points, surface proved between {:.1} and {:.1} mm from its centre",
-        line.object,
-        line.points,
-        1e3 * line.r_min_certified_m,
-        1e3 * line.r_max_certified_m
-    ));
-    output::say(format!(
-        "nearest known objects: {}",
-        line.neighbours.join(", ")
-    ));
-    let rejected: Vec<String> = reasons
-        .iter()
-        .filter(|(_, count)| *count > 0)
-        .map(|(reason, count)| format!("{count} {}", reason.replace('_', " ")))
-        .collect();
-    output::say(format!(
-        "{} of {} transferred grasps are force-closed, the hand reaches {}; {} of {} hand poses give a stable grasp ({})",
-        line.transferred_closed,
-        line.transferred,
-        line.transferred_with_hand,
-        line.synthesized,
-        line.poses,
-        rejected.join(", ")
-    ));
-    output::say("");
-    output::say(format!(
-        "{:>4}  {:>7}  {:36}  {}",
-        "rank", "quality", "source", "contacts (mm, frame of the cloud)"
-    ));
-    for grasp in file.grasps.iter().take(SHOWN) {
-        let contacts: Vec<String> = grasp
-            .contacts_m
-            .iter()
-            .map(|c| format!("({:.1} {:.1} {:.1})", 1e3 * c[0], 1e3 * c[1], 1e3 * c[2]))
-            .collect();
+impl GraspLine {
+    fn say_found(&self, hand: &Hand, synthesis: &str) {
         output::say(format!(
-            "{:>4}  {:>7.4}  {:36}  {}",
-            grasp.rank,
-            grasp.quality,
-            page::source_label(&grasp.source),
-            contacts.join(" ")
+            "{}: {} points, surface proved between {:.1} and {:.1} mm from its centre",
+            self.object,
+            self.points,
+            1e3 * self.r_min_certified_m,
+            1e3 * self.r_max_certified_m
+        ));
+        output::say(format!(
+            "nearest known objects: {}",
+            self.neighbours.join(", ")
+        ));
+        output::say(format!(
+            "{} of {} transferred grasps are force-closed, the hand {} reaches {}; {synthesis}",
+            self.transferred_closed, self.transferred, self.hand, self.transferred_with_hand,
+        ));
+        if self.transferred_of_other_count > 0 {
+            output::say(format!(
+                "{} transferred grasps come without a hand: the library's have as many contacts as the SDH has fingers, three, and {} has {}",
+                self.transferred_of_other_count,
+                self.hand,
+                hand.fingers().len()
+            ));
+        }
+    }
+
+    fn say_end(&self) {
+        output::say(format!(
+            "{} grasps under convention `{}`, contacts within {:.2} mm of the cloud, {:.1} s",
+            self.grasps,
+            self.convention,
+            1e3 * self.contact_to_cloud_max_m,
+            self.seconds
         ));
     }
-    output::say("");
-    output::say(format!(
-        "{} grasps under convention `{}`, contacts within {:.2} mm of the cloud, {:.1} s",
-        line.grasps,
-        line.convention,
-        1e3 * line.contact_to_cloud_max_m,
-        line.seconds
-    ));
-    output::say(format!("{}\n{}", line.grasps_json, line.index_html));
 }

@@ -1,6 +1,6 @@
 //! `moduli info`: what a file holds.
 
-use record::{GraspsFile, Kind, LibraryRecord, ShapeRecord, envelope};
+use record::{GraspsFile, GraspsFileError, Kind, LibraryRecord, ShapeRecord, envelope};
 
 use shape::io::{Geometry, Loaded};
 
@@ -20,9 +20,10 @@ pub(crate) fn run(options: &InfoOptions) -> Result<(), Failure> {
             let record = LibraryRecord::from_bytes(&bytes).map_err(|e| Failure::input(path, e))?;
             library_lines(&record)
         }
-        None => match serde_json::from_slice::<GraspsFile>(&bytes) {
+        None => match GraspsFile::from_json(&bytes) {
             Ok(file) => grasps_lines(&file),
-            Err(_) => {
+            Err(e @ GraspsFileError::Version { .. }) => return Err(Failure::input(path, e)),
+            Err(GraspsFileError::Json(_)) => {
                 let loaded = input::load(path)?;
                 loaded_lines(&loaded)
             }

@@ -6,7 +6,6 @@ use std::time::Instant;
 use grasp::{CentreRule, Contact, Convention, Epsilon, Grasp, Workspace};
 use nalgebra::{Point3, UnitVector3, Vector3};
 use rayon::prelude::*;
-use record::GraspsFile;
 use serde::Serialize;
 
 use crate::args::{Common, QualityOptions};
@@ -177,8 +176,7 @@ fn read_csv(path: &Path) -> Result<Vec<Grasp>, Failure> {
 
 /// Our own grasps.json; torques are taken about the object's centre.
 fn read_json(path: &Path) -> Result<Vec<Grasp>, Failure> {
-    let file: GraspsFile = serde_json::from_slice(&input::read(path)?)
-        .map_err(|e| Failure::input(path, format!("not a grasps.json: {e}")))?;
+    let file = input::grasps(path)?;
     file.grasps
         .iter()
         .enumerate()

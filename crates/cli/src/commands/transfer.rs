@@ -6,15 +6,15 @@ use moduli::transfer::Transfer;
 use moduli::{
     Continuation, Objective, PaperAscent, PaperTransfer, Step, TransferError, Transferred,
 };
-use rayon::prelude::*;
 use record::grasps::SourceRecord;
 use shape::{RadialField, Surface, space};
 
 use crate::args::{Common, TransferOptions, TransferScheme};
 use crate::commands::ascend::PAPER_ASCENT;
+use crate::delivery::Movement;
 use crate::failure::Failure;
-use crate::placed::{Delivery, Moved, Object, Placed, TraceStep, deliver};
-use crate::{input, output};
+use crate::input;
+use crate::placed::{Moved, Object, Placed, TraceStep};
 
 /// The paper's transfer (Sec. IV-E).
 const PAPER: PaperTransfer = PaperTransfer {
@@ -33,7 +33,7 @@ enum Scheme {
 }
 
 pub(crate) fn run(options: &TransferOptions, common: &Common) -> Result<(), Failure> {
-    let convention = input::convention(&options.convention)?;
+    let convention = input::convention(&options.moved.convention)?;
     let (from, to) = (Object::read(&options.from)?, Object::read(&options.to)?);
     let grasps = from.grasps(&options.grasps)?;
     let transfer = Transfer {
@@ -47,31 +47,21 @@ pub(crate) fn run(options: &TransferOptions, common: &Common) -> Result<(), Fail
         Failure::refused(format!("{} to {}: {e}", from.record.name, to.record.name))
     })?;
     let source = source(&from, &to);
-    let bar = output::progress(common.quiet, grasps.len(), "transferring");
-    let moved = grasps
-        .par_iter()
-        .enumerate()
-        .map(|(i, placed)| {
-            let moved = carry(options, &scheme, &transfer, &to, placed, &source)
-                .map_err(|e| Failure::input(&options.grasps, format!("grasp {i}: {e}")))?;
-            bar.inc(1);
-            Ok(moved)
-        })
-        .collect::<Result<Vec<_>, Failure>>()?;
-    bar.finish_and_clear();
-    let how = Delivery {
+    let movement = Movement {
+        doing: "transferring",
         scheme: match options.scheme {
             TransferScheme::Ours => "ours",
             TransferScheme::Paper => "paper",
             TransferScheme::Naive => "naive",
         },
-        output: options.output.as_deref(),
-        trace: options.trace.as_deref(),
-        json: common.json,
-        seconds: start.elapsed().as_secs_f64(),
+        object: &to,
+        objective: &Objective::new(&convention, &to.surface, &to.origin()),
+        start,
     };
-    let objective = Objective::new(&convention, &to.surface, &to.origin());
-    deliver(&to, &objective, &moved, &how)
+    movement.run(&grasps, &options.moved, common, |i, placed| {
+        carry(options, &scheme, &transfer, &to, placed, &source)
+            .map_err(|e| Failure::input(&options.grasps, format!("grasp {i}: {e}")))
+    })
 }
 
 fn prepare(options: &TransferOptions, transfer: &Transfer) -> Result<Scheme, TransferError> {
@@ -109,7 +99,7 @@ fn carry(
 ) -> Result<Moved, TransferError> {
     let mut steps = Vec::new();
     let keep = |t: f64, step: &Step| {
-        if options.trace.is_some() {
+        if options.moved.trace.is_some() {
             steps.push(TraceStep::new(t, step, points(transfer, to, t, step)));
         }
     };

@@ -1,11 +1,11 @@
 //! The page that `grasp` writes.
 
 use hand::{Hand, hand_meshes};
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Vector3};
 use record::GraspsFile;
 use record::grasps::{ConventionRecord, SourceRecord};
 use report::{GraspPage, Mesh, PageGrasp, grasp_page};
-use shape::PointCloud;
+use shape::{PointCloud, TriangleMesh};
 
 use super::ranking::{cloud_from_palm, in_cloud};
 use super::{Candidate, Target};
@@ -16,13 +16,14 @@ const MESH: usize = 100;
 /// Grasps that are drawn with their hand.
 const HANDS: usize = 12;
 
-/// The whole page, in the frame of the cloud.
+/// The whole page, in the frame of the cloud; `more` are lines at the end of its head.
 pub(crate) fn render(
     target: &Target,
-    cloud: &PointCloud,
+    cloud: Option<&PointCloud>,
     hand: &Hand,
     ranked: &[Candidate],
     file: &GraspsFile,
+    more: Vec<String>,
 ) -> Result<String, Failure> {
     let centre = target.fit.centre_in_cloud;
     let mesh = target.fit.shape.mesh(MESH, MESH);
@@ -40,14 +41,18 @@ pub(crate) fn render(
             hand: placement.and_then(|p| drawn_hand(hand, &p.joints, &cloud_from_palm(p, &centre))),
         }
     });
+    let mut subtitle_lines = facts(target, &mesh, &file.convention);
+    subtitle_lines.extend(more);
     let page = GraspPage {
         title: target.name.to_owned(),
-        subtitle_lines: facts(target, cloud, &file.convention),
+        subtitle_lines,
         mesh: Mesh {
             vertices: mesh.vertices.iter().map(|p| in_cloud(p, &centre)).collect(),
             triangles: mesh.triangles,
         },
-        cloud: cloud.points().iter().map(|p| (*p).into()).collect(),
+        cloud: cloud.map_or_else(Vec::new, |cloud| {
+            cloud.points().iter().map(|p| (*p).into()).collect()
+        }),
         friction: file.convention.friction,
         grasps: grasps.collect(),
     };
@@ -78,8 +83,8 @@ pub(crate) fn source_label(source: &SourceRecord) -> String {
     }
 }
 
-fn facts(target: &Target, cloud: &PointCloud, convention: &ConventionRecord) -> Vec<String> {
-    let size = 1e3 * cloud.extent();
+fn facts(target: &Target, mesh: &TriangleMesh, convention: &ConventionRecord) -> Vec<String> {
+    let size = 1e3 * extent(mesh);
     let (low, high) = target.fit.shape.radius_bounds();
     let torque = convention
         .torque_length_m
@@ -90,7 +95,7 @@ fn facts(target: &Target, cloud: &PointCloud, convention: &ConventionRecord) -> 
     vec![
         format!(
             "{} points, {:.0} × {:.0} × {:.0} mm; degree {}, fitted to {:.2} mm (root mean square).",
-            cloud.points().len(),
+            target.fit.points,
             size.x,
             size.y,
             size.z,
@@ -107,6 +112,18 @@ fn facts(target: &Target, cloud: &PointCloud, convention: &ConventionRecord) -> 
             convention.name, convention.friction
         ),
     ]
+}
+
+/// Lengths of the edges of the mesh's box, metres.
+fn extent(mesh: &TriangleMesh) -> Vector3<f64> {
+    let start = Vector3::repeat(f64::INFINITY);
+    let (low, high) = mesh
+        .vertices
+        .iter()
+        .fold((start, -start), |(low, high), p| {
+            (low.inf(&p.coords), high.sup(&p.coords))
+        });
+    high - low
 }
 
 fn details(record: &record::GraspRecord) -> Vec<(String, String)> {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hand::Hand;
+use hand::{Hand, ReachParams};
 use nalgebra::{Isometry3, Point3, Translation3};
 use record::grasps::{
     ConventionRecord, GRASPS_VERSION, HandRecord, ObjectRecord, PoseRecord, SourceRecord,
@@ -71,13 +71,13 @@ fn grasp_record(
         hand: candidate
             .hand
             .as_ref()
-            .map(|placement| hand_record(placement, hand, centre)),
+            .map(|placement| hand_record(candidate, placement, hand, centre)),
     }
 }
 
 fn source_record(source: &Source) -> SourceRecord {
     match source {
-        Source::Synthesis => SourceRecord {
+        Source::Synthesis { .. } => SourceRecord {
             kind: "synthesis".to_owned(),
             from: None,
             shape_distance_m: None,
@@ -101,22 +101,42 @@ pub(crate) fn cloud_from_palm(placement: &HandPlacement, centre: &Point3<f64>) -
     Translation3::from(centre.coords) * placement.object_from_palm
 }
 
-fn hand_record(placement: &HandPlacement, hand: &Hand, centre: &Point3<f64>) -> HandRecord {
+fn hand_record(
+    candidate: &Candidate,
+    placement: &HandPlacement,
+    hand: &Hand,
+    centre: &Point3<f64>,
+) -> HandRecord {
     let pose = cloud_from_palm(placement, centre);
-    let joints: BTreeMap<String, f64> = hand
-        .model()
-        .driven_names()
-        .into_iter()
-        .map(str::to_owned)
-        .zip(placement.joints.iter().copied())
-        .collect();
+    let before = match candidate.source {
+        Source::Synthesis { preshape } => hand.preshapes()[preshape].joints.clone(),
+        Source::Transfer { .. } => opened(hand, &placement.joints),
+    };
     HandRecord {
         name: hand.name().to_owned(),
+        palm_link: hand.model().links()[0].name.clone(),
         object_from_palm: PoseRecord {
             translation_m: pose.translation.vector.into(),
             quaternion_xyzw: pose.rotation.coords.into(),
         },
-        joints_rad: joints,
+        joints_rad: by_name(hand, &placement.joints),
+        pregrasp_joints_rad: by_name(hand, &before),
         contact_error_m: placement.contact_error,
     }
+}
+
+fn by_name(hand: &Hand, joints: &[f64]) -> BTreeMap<String, f64> {
+    let names = hand.model().driven_names().into_iter().map(str::to_owned);
+    names.zip(joints.iter().copied()).collect()
+}
+
+/// The joints with every finger opened by as much as the search for a hand opens it.
+fn opened(hand: &Hand, joints: &[f64]) -> Vec<f64> {
+    let mut open = joints.to_vec();
+    let opening = ReachParams::default().opening;
+    for &(driven, ratio) in hand.fingers().iter().flat_map(|f| &f.closing) {
+        open[driven] -= opening * ratio;
+    }
+    hand.model().clamp_to_limits(&mut open);
+    open
 }

@@ -24,7 +24,11 @@ pub fn figures(found: &[ObjectClimbs], drawn: &[DrawnClimb]) -> Vec<Section> {
         .iter()
         .filter(|o| !o.climbs.is_empty())
         .map(|o| {
-            let points = o.climbs.iter().map(|c| [c.initial, c.last]).collect();
+            let points = o
+                .climbs
+                .iter()
+                .map(|c| [c.paper.initial, c.paper.last])
+                .collect();
             Series::points(o.id.clone(), points)
         })
         .collect();

@@ -29,7 +29,7 @@ pub fn figures(
             let of = carried.iter().filter(|t| t.from == c.from);
             Series::points(
                 format!("from {}", c.from),
-                of.map(|t| [t.initial, pick(t)]).collect(),
+                of.map(|t| [t.paper.initial, pick(t)]).collect(),
             )
         };
         Block::Chart(Chart {
@@ -46,8 +46,9 @@ pub fn figures(
         })
     };
     let quality = vec![
-        chart("The paper's transfer", |t| t.last),
-        chart("The naive transfer: θ and φ kept", |t| t.naive),
+        chart("The paper's transfer", |t| t.paper.last),
+        chart("Our transfer", |t| t.ours.last),
+        chart("The naive transfer: θ and φ kept", |t| t.paper.naive),
         Block::Bars(unstable(&sources.clone().collect::<Vec<_>>())),
     ];
     let way = drawn.map(|d| Block::SceneGrid(grid(d)));

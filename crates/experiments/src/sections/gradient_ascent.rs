@@ -1,16 +1,17 @@
 //! Fig. 7, Fig. 8 and Sec. IV-D: the paper's ascent and ours from the grasps of G_i.
 
+use hand::HandGrasp;
 use moduli::{MonotoneAscent, PaperAscent};
-use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 use sph::Direction;
 
 use crate::error::ExperimentError;
 use crate::figures::{self, gradient_ascent::DrawnClimb};
+use crate::ledger::{self, ThreadSeconds, run_kept};
 use crate::output::Findings;
 use crate::paper;
-use crate::pipeline::{FittedObject, FittedSet, best_grasps, fitted_objects};
+use crate::pipeline::{FittedObject, FittedSet, best_grasps, directions, fitted_objects};
 use crate::run::Run;
 use crate::statistics::{mean, share, summary};
 use crate::table::{Table, number, per_cent};
@@ -49,6 +50,16 @@ pub fn paper_ascent(steps: usize) -> PaperAscent {
 /// One ascent.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Climb {
+    /// The paper's ascent.
+    #[serde(flatten)]
+    pub paper: PaperClimb,
+    /// Our ascent from the same start.
+    pub ours: OurClimb,
+}
+
+/// Where the paper's ascent ended.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PaperClimb {
     /// Q at the start.
     pub initial: f64,
     /// Q at the end.
@@ -57,17 +68,12 @@ pub struct Climb {
     pub highest: f64,
     /// Qualities computed.
     pub evaluations: usize,
-    /// Our ascent from the same start.
-    pub ours: OurClimb,
-    /// The contacts at the start.
-    #[serde(skip)]
-    pub start: Vec<Direction>,
     /// Largest angle between where a contact began and where it ended, radians.
     pub moved_rad: f64,
 }
 
 /// Where our ascent ended.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OurClimb {
     /// Q at the end.
     pub last: f64,
@@ -109,6 +115,8 @@ pub struct Overall {
     pub ours_below_start: usize,
     /// Ours: mean of Q at the ends.
     pub ours_mean_final: Option<f64>,
+    /// Largest slope of Q left at an end of ours, per radian.
+    pub ours_largest_stationarity: f64,
     /// Qualities that the paper's ascent computes for one of ours.
     pub evaluations_ratio: Option<f64>,
 }
@@ -117,7 +125,8 @@ pub struct Overall {
 pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
     let plan = Plan::of(run);
     let set = fitted_objects(run, None, 1)?;
-    let ours = measure(run, &plan, &set)?;
+    let grasps = best_grasps(run, &set, plan.poses, plan.grasps)?;
+    let (ours, times) = measure(run, &plan, &set, &grasps)?;
     let all: Vec<Climb> = ours.iter().flat_map(|o| o.climbs.iter().cloned()).collect();
     let overall = overall(&all);
     Ok(Findings {
@@ -131,77 +140,111 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
             "examples_initial_final": paper::ASCENT_EXAMPLES,
             "finding": "quality typically improves significantly; some ascents do not converge and end worse",
         }),
-        table: table(&plan, &ours, &overall),
+        table: table(&plan, &ours, &overall, &times),
         ours: json!({
             "poses": plan.poses,
             "grasps_per_object": plan.grasps,
             "steps": plan.ascent.steps,
             "overall": overall,
+            "thread_seconds": times,
             "largest_improvements_initial_final": examples(&all),
             "by_object": ours,
         }),
-        figures: figures::gradient_ascent::figures(&ours, &drawn(run, &plan, &set, &ours)?),
+        figures: figures::gradient_ascent::figures(
+            &ours,
+            &drawn(run, &plan, &set, &grasps, &ours)?,
+        ),
     })
 }
 
-/// Climbs from the best hand grasps of every object.
+/// Climbs from given grasps of every object: all ascents of the paper, then all of ours.
 pub fn measure(
     run: &Run,
     plan: &Plan,
     set: &FittedSet,
-) -> Result<Vec<ObjectClimbs>, ExperimentError> {
-    let grasps = best_grasps(run, set, plan.poses, plan.grasps)?;
+    grasps: &[Vec<HandGrasp>],
+) -> Result<(Vec<ObjectClimbs>, ThreadSeconds), ExperimentError> {
+    let starts = directions(grasps);
+    let key = ledger::key(run, set, &starts, json!(format!("{plan:?}")));
+    let jobs: Vec<(&FittedObject, &[Direction])> = set
+        .objects
+        .iter()
+        .zip(&starts)
+        .flat_map(|(fitted, starts)| starts.iter().map(move |start| (fitted, &start[..])))
+        .collect();
     run.say(&format!(
-        "{} ascents of {} steps",
-        grasps.iter().map(Vec::len).sum::<usize>(),
+        "{} ascents of {} steps, and ours",
+        jobs.len(),
         plan.ascent.steps
     ));
-    set.objects
-        .par_iter()
-        .zip(&grasps)
-        .map(|(fitted, grasps)| {
-            let climbs = grasps
-                .par_iter()
-                .map(|grasp| climb(run, plan, fitted, &grasp.directions))
-                .collect::<Result<_, _>>()?;
-            Ok(ObjectClimbs {
-                id: fitted.id().to_owned(),
-                climbs,
-            })
+    let paper = run_kept(
+        run,
+        "ascents of the paper",
+        &key,
+        &jobs,
+        |(fitted, start)| climb_as_the_paper(run, plan, fitted, start),
+    )?;
+    let ours = run_kept(run, "ascents of ours", &key, &jobs, |(fitted, start)| {
+        climb(run, fitted, start)
+    })?;
+    let times = ThreadSeconds {
+        paper: paper.thread_seconds,
+        ours: ours.thread_seconds,
+    };
+    let mut climbs = paper
+        .results
+        .into_iter()
+        .zip(ours.results)
+        .map(|(paper, ours)| Climb { paper, ours });
+    let by_object = set
+        .objects
+        .iter()
+        .zip(&starts)
+        .map(|(fitted, starts)| ObjectClimbs {
+            id: fitted.id().to_owned(),
+            climbs: climbs.by_ref().take(starts.len()).collect(),
         })
-        .collect()
+        .collect();
+    Ok((by_object, times))
 }
 
-fn climb(
+fn climb_as_the_paper(
     run: &Run,
     plan: &Plan,
     fitted: &FittedObject,
     start: &[Direction],
-) -> Result<Climb, ExperimentError> {
+) -> Result<PaperClimb, ExperimentError> {
     let mut objective = fitted.objective(&run.convention);
     let mut highest = 0.0_f64;
-    let ascent = plan
+    let end = plan
         .ascent
         .climb(&fitted.surface, start, &mut objective, |step| {
             highest = highest.max(step.quality);
         })?;
-    let own = MonotoneAscent::default().climb(&fitted.surface, start, &mut objective, |_| {})?;
     let moved = start
         .iter()
-        .zip(&ascent.contacts)
+        .zip(&end.contacts)
         .map(|(p, q)| sph::direction::angle(p, q));
-    Ok(Climb {
-        initial: ascent.start_quality,
-        last: ascent.quality,
+    Ok(PaperClimb {
+        initial: end.start_quality,
+        last: end.quality,
         highest,
-        evaluations: ascent.evaluations,
-        ours: OurClimb {
-            last: own.quality,
-            evaluations: own.evaluations,
-            stationarity: own.stationarity,
-        },
-        start: start.to_vec(),
+        evaluations: end.evaluations,
         moved_rad: moved.fold(0.0, f64::max),
+    })
+}
+
+fn climb(
+    run: &Run,
+    fitted: &FittedObject,
+    start: &[Direction],
+) -> Result<OurClimb, ExperimentError> {
+    let mut objective = fitted.objective(&run.convention);
+    let end = MonotoneAscent::default().climb(&fitted.surface, start, &mut objective, |_| {})?;
+    Ok(OurClimb {
+        last: end.quality,
+        evaluations: end.evaluations,
+        stationarity: end.stationarity,
     })
 }
 
@@ -210,30 +253,28 @@ fn drawn<'a>(
     run: &Run,
     plan: &Plan,
     set: &'a FittedSet,
+    grasps: &[Vec<HandGrasp>],
     found: &[ObjectClimbs],
 ) -> Result<Vec<DrawnClimb<'a>>, ExperimentError> {
-    let all: Vec<(&'a FittedObject, &Climb)> = set
-        .objects
-        .iter()
-        .zip(found)
-        .flat_map(|(fitted, of)| of.climbs.iter().map(move |climb| (fitted, climb)))
-        .collect();
-    let by_gain = |a: &&(&FittedObject, &Climb), b: &&(&FittedObject, &Climb)| {
-        let gain = |climb: &Climb| climb.last - climb.initial;
-        gain(a.1).total_cmp(&gain(b.1))
-    };
-    let mut chosen: Vec<(&'a FittedObject, &Climb)> = Vec::new();
-    while chosen.len() < paper::ASCENT_EXAMPLES.len() {
-        let new = |(o, _): &&(&FittedObject, &Climb)| chosen.iter().all(|c| c.0.id() != o.id());
-        let Some(best) = all.iter().filter(new).max_by(by_gain) else {
-            break;
-        };
-        chosen.push(*best);
+    let mut all: Vec<(&'a FittedObject, &[Direction], &PaperClimb)> = Vec::new();
+    for ((fitted, grasps), of) in set.objects.iter().zip(grasps).zip(found) {
+        let pairs = grasps.iter().zip(&of.climbs);
+        all.extend(pairs.map(|(g, c)| (fitted, &g.directions[..], &c.paper)));
     }
-    chosen.extend(all.iter().min_by(by_gain));
+    let gain = |climb: &PaperClimb| climb.last - climb.initial;
+    all.sort_by(|a, b| gain(b.2).total_cmp(&gain(a.2)));
+    let mut chosen = Vec::new();
+    let mut ids: Vec<&str> = Vec::new();
+    for one in &all {
+        if ids.len() < paper::ASCENT_EXAMPLES.len() && !ids.contains(&one.0.id()) {
+            ids.push(one.0.id());
+            chosen.push(one);
+        }
+    }
+    chosen.extend(all.last());
     chosen
         .into_iter()
-        .map(|(fitted, climb)| draw(run, plan, fitted, climb))
+        .map(|(fitted, start, climb)| draw(run, plan, fitted, start, climb))
         .collect()
 }
 
@@ -242,7 +283,8 @@ fn draw<'a>(
     run: &Run,
     plan: &Plan,
     fitted: &'a FittedObject,
-    climb: &Climb,
+    start: &[Direction],
+    climb: &PaperClimb,
 ) -> Result<DrawnClimb<'a>, ExperimentError> {
     let mut objective = fitted.objective(&run.convention);
     let mut states = Vec::new();
@@ -255,7 +297,7 @@ fn draw<'a>(
     };
     let end = plan
         .ascent
-        .climb(&fitted.surface, &climb.start, &mut objective, keep)?;
+        .climb(&fitted.surface, start, &mut objective, keep)?;
     states.push(end.contacts);
     Ok(DrawnClimb {
         label: format!("{} Q {:.2} → {:.2}", fitted.id(), climb.initial, climb.last),
@@ -270,33 +312,42 @@ pub fn overall(climbs: &[Climb]) -> Overall {
     let share_of =
         |which: fn(&&Climb) -> bool| share(climbs.iter().filter(which).count(), climbs.len());
     let total = |pick: fn(&Climb) -> usize| climbs.iter().map(pick).sum::<usize>();
+    let slopes = climbs.iter().map(|c| c.ours.stationarity);
     Overall {
         climbs: climbs.len(),
-        share_improved: share_of(|c| c.last > c.initial),
-        share_worsened: share_of(|c| c.last < c.initial),
-        mean_initial: mean_of(|c| c.initial),
-        mean_final: mean_of(|c| c.last),
-        mean_change: mean_of(|c| c.last - c.initial),
-        mean_lost_from_highest: mean_of(|c| c.highest - c.last),
-        ours_share_improved: share_of(|c| c.ours.last > c.initial),
-        ours_below_start: climbs.iter().filter(|c| c.ours.last < c.initial).count(),
+        share_improved: share_of(|c| c.paper.last > c.paper.initial),
+        share_worsened: share_of(|c| c.paper.last < c.paper.initial),
+        mean_initial: mean_of(|c| c.paper.initial),
+        mean_final: mean_of(|c| c.paper.last),
+        mean_change: mean_of(|c| c.paper.last - c.paper.initial),
+        mean_lost_from_highest: mean_of(|c| c.paper.highest - c.paper.last),
+        ours_share_improved: share_of(|c| c.ours.last > c.paper.initial),
+        ours_below_start: climbs
+            .iter()
+            .filter(|c| c.ours.last < c.paper.initial)
+            .count(),
         ours_mean_final: mean_of(|c| c.ours.last),
-        evaluations_ratio: share(total(|c| c.evaluations), total(|c| c.ours.evaluations)),
+        ours_largest_stationarity: slopes.fold(0.0, f64::max),
+        evaluations_ratio: share(
+            total(|c| c.paper.evaluations),
+            total(|c| c.ours.evaluations),
+        ),
     }
 }
 
 /// The four ascents that gained most, to stand beside those of Fig. 8.
 fn examples(climbs: &[Climb]) -> Vec<(f64, f64)> {
     let mut sorted: Vec<&Climb> = climbs.iter().collect();
-    sorted.sort_by(|a, b| (b.last - b.initial).total_cmp(&(a.last - a.initial)));
+    let gain = |c: &Climb| c.paper.last - c.paper.initial;
+    sorted.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
     sorted
         .iter()
         .take(paper::ASCENT_EXAMPLES.len())
-        .map(|c| (c.initial, c.last))
+        .map(|c| (c.paper.initial, c.paper.last))
         .collect()
 }
 
-fn table(plan: &Plan, ours: &[ObjectClimbs], overall: &Overall) -> Table {
+fn table(plan: &Plan, ours: &[ObjectClimbs], overall: &Overall, times: &ThreadSeconds) -> Table {
     let mut table = Table::new(
         format!(
             "Sec. IV-D: {} steps of the paper's ascent from the best {} grasps of {} poses (paper: {}, {}, {})",
@@ -321,7 +372,7 @@ fn table(plan: &Plan, ours: &[ObjectClimbs], overall: &Overall) -> Table {
     );
     for o in ours {
         let of = self::overall(&o.climbs);
-        let ends: Vec<f64> = o.climbs.iter().map(|c| c.last).collect();
+        let ends: Vec<f64> = o.climbs.iter().map(|c| c.paper.last).collect();
         table.row([
             o.id.clone(),
             of.climbs.to_string(),
@@ -354,6 +405,10 @@ fn table(plan: &Plan, ours: &[ObjectClimbs], overall: &Overall) -> Table {
         "Ours from the same starts: {} improved, none of its steps down; the paper's computes {} times as many qualities",
         per_cent(overall.ours_share_improved),
         number(overall.evaluations_ratio, 1)
+    ));
+    table.note(format!(
+        "Seconds of all ascents, summed over threads: {:.1}, ours {:.1}",
+        times.paper, times.ours
     ));
     table.note(format!(
         "Largest improvements {}; examples of the paper {}",

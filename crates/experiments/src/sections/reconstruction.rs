@@ -82,8 +82,8 @@ pub struct Fitted {
 /// Runs the section.
 pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
     let plan = Plan::of(run);
-    let mut objects = Objects::load(&run.objects, run.seed)?;
-    if let Some(numbers) = &plan.objects {
+    let mut objects = Objects::load(&run.objects, run.seed)?.only(run.only)?;
+    if let (Some(numbers), true) = (&plan.objects, run.only.is_empty()) {
         objects = objects.select(numbers);
     }
     let fits = measure(run, &plan, &objects.clouds)?;

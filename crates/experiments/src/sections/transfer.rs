@@ -3,17 +3,17 @@
 use hand::HandGrasp;
 use moduli::transfer::Transfer;
 use moduli::{Continuation, PaperTransfer};
-use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 use sph::Direction;
 
 use crate::error::ExperimentError;
 use crate::figures::{self, transfer::DrawnTransfer};
+use crate::ledger::{self, ThreadSeconds, run_kept};
 use crate::output::Findings;
 use crate::paper;
 use crate::pipeline::{
-    FittedObject, FittedSet, best_grasps, fitted_objects, is_stable, least_quality,
+    FittedObject, FittedSet, best_grasps, directions, fitted_objects, is_stable, least_quality,
 };
 use crate::run::Run;
 use crate::sections::gradient_ascent::paper_ascent;
@@ -58,18 +58,35 @@ pub struct Carried {
     pub to: String,
     /// Its rank among the grasps of its source, from 0.
     pub rank: usize,
+    /// The paper's transfer.
+    #[serde(flatten)]
+    pub paper: PaperCarried,
+    /// Ours.
+    pub ours: OurCarried,
+}
+
+/// Where the paper's transfer ended.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PaperCarried {
     /// Q on the source.
     pub initial: f64,
-    /// Q on the target after the paper's transfer.
+    /// Q on the target.
     pub last: f64,
     /// Q on the target with θ and φ kept.
     pub naive: f64,
-    /// Q on the target after our transfer.
-    pub ours: f64,
-    /// Qualities that the paper's transfer computed.
+    /// Qualities computed.
     pub evaluations: usize,
-    /// Qualities that ours computed.
-    pub evaluations_ours: usize,
+}
+
+/// Where our transfer ended.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OurCarried {
+    /// Q on the target.
+    pub last: f64,
+    /// Qualities computed.
+    pub evaluations: usize,
+    /// Slope of Q left on the target, per radian.
+    pub stationarity: Option<f64>,
 }
 
 /// Transfers in short.
@@ -104,7 +121,7 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
     let plan = Plan::of(run);
     let set = fitted_objects(run, plan.objects.as_deref(), 2)?;
     let grasps = best_grasps(run, &set, plan.poses, plan.grasps)?;
-    let carried = measure(run, &plan, &set, &grasps)?;
+    let (carried, times) = measure(run, &plan, &set, &grasps)?;
     let counts = counts(run, &set, &carried);
     let drawn = drawn(run, &plan, &set, &grasps)?;
     let by_source: Vec<_> = paper::UNSTABLE_BY_SOURCE
@@ -124,7 +141,7 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
             "unstable": paper::UNSTABLE_TRANSFERS,
             "unstable_by_source": by_source,
         }),
-        table: table(&plan, &counts),
+        table: table(&plan, &counts, &times),
         ours: json!({
             "poses": plan.poses,
             "grasps_per_source": plan.grasps,
@@ -132,68 +149,105 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
             "steps_per_station": plan.transfer.ascent.steps,
             "unstable_below": least_quality(&run.convention),
             "counts": counts,
+            "thread_seconds": times,
             "transfers": carried,
         }),
         figures: figures::transfer::figures(&carried, &counts, drawn.as_ref()),
     })
 }
 
-/// Carries the best hand grasps of every object to every other object.
+/// Carries the best hand grasps of every object to every other object: by the paper's scheme, then
+/// by ours.
 pub fn measure(
     run: &Run,
     plan: &Plan,
     set: &FittedSet,
     grasps: &[Vec<HandGrasp>],
-) -> Result<Vec<Carried>, ExperimentError> {
-    let pairs: Vec<(usize, usize)> = (0..set.objects.len())
-        .flat_map(|i| (0..set.objects.len()).map(move |j| (i, j)))
+) -> Result<(Vec<Carried>, ThreadSeconds), ExperimentError> {
+    let starts = directions(grasps);
+    let key = ledger::key(run, set, &starts, json!(format!("{plan:?}")));
+    let count = set.objects.len();
+    let pairs: Vec<(usize, usize)> = (0..count)
+        .flat_map(|i| (0..count).map(move |j| (i, j)))
         .filter(|(i, j)| i != j)
         .collect();
-    let total: usize = pairs.iter().map(|(i, _)| grasps[*i].len()).sum();
+    let total: usize = pairs.iter().map(|(i, _)| starts[*i].len()).sum();
     run.say(&format!("{total} transfers"));
-    let carried = pairs
-        .par_iter()
-        .map(|&(i, j)| carry(run, plan, [&set.objects[i], &set.objects[j]], &grasps[i]))
-        .collect::<Result<Vec<_>, _>>()?;
-    Ok(carried.into_iter().flatten().collect())
+    let transfer = |i: usize, j: usize| transfer_between(run, &set.objects[i], &set.objects[j]);
+    let paper = run_kept(run, "pairs by the paper", &key, &pairs, |&(i, j)| {
+        carry_as_the_paper(plan, &transfer(i, j), &starts[i])
+    })?;
+    let ours = run_kept(run, "pairs by ours", &key, &pairs, |&(i, j)| {
+        carry(&transfer(i, j), &starts[i])
+    })?;
+    let times = ThreadSeconds {
+        paper: paper.thread_seconds,
+        ours: ours.thread_seconds,
+    };
+    let mut carried = Vec::with_capacity(total);
+    for ((&(i, j), paper), ours) in pairs.iter().zip(paper.results).zip(ours.results) {
+        for (rank, (paper, ours)) in paper.into_iter().zip(ours).enumerate() {
+            carried.push(Carried {
+                from: set.objects[i].id().to_owned(),
+                to: set.objects[j].id().to_owned(),
+                rank,
+                paper,
+                ours,
+            });
+        }
+    }
+    Ok((carried, times))
 }
 
-/// Carries all grasps of one source to one target, over the same stations.
-fn carry(
-    run: &Run,
-    plan: &Plan,
-    [from, to]: [&FittedObject; 2],
-    grasps: &[HandGrasp],
-) -> Result<Vec<Carried>, ExperimentError> {
-    let transfer = Transfer {
+/// What both schemes need, from one object to another.
+pub fn transfer_between<'a>(
+    run: &'a Run,
+    from: &'a FittedObject,
+    to: &'a FittedObject,
+) -> Transfer<'a> {
+    Transfer {
         from: &from.surface,
         to: &to.surface,
         convention: &run.convention,
         object_origin: to.object_origin(),
-    };
-    let stations = plan.transfer.stations(&transfer)?;
-    let ours = Continuation::default();
-    let own_stations = ours.stations(&transfer)?;
-    grasps
-        .par_iter()
-        .enumerate()
-        .map(|(rank, grasp)| {
-            let start = &grasp.directions;
-            let end = plan
-                .transfer
-                .carry(&transfer, &stations, start, |_, _| {})?;
-            let naive = transfer.naive(start)?;
-            let own = ours.carry(&transfer, &own_stations, start, |_, _| {})?;
-            Ok(Carried {
-                from: from.id().to_owned(),
-                to: to.id().to_owned(),
-                rank,
+    }
+}
+
+/// Carries all grasps of one source to one target, over the same stations.
+fn carry_as_the_paper(
+    plan: &Plan,
+    transfer: &Transfer,
+    starts: &[Vec<Direction>],
+) -> Result<Vec<PaperCarried>, ExperimentError> {
+    let stations = plan.transfer.stations(transfer)?;
+    starts
+        .iter()
+        .map(|start| {
+            let end = plan.transfer.carry(transfer, &stations, start, |_, _| {})?;
+            Ok(PaperCarried {
                 initial: end.start_quality,
                 last: end.quality,
-                naive: naive.quality,
-                ours: own.quality,
+                naive: transfer.naive(start)?.quality,
                 evaluations: end.evaluations,
-                evaluations_ours: own.evaluations,
+            })
+        })
+        .collect()
+}
+
+fn carry(
+    transfer: &Transfer,
+    starts: &[Vec<Direction>],
+) -> Result<Vec<OurCarried>, ExperimentError> {
+    let scheme = Continuation::default();
+    let stations = scheme.stations(transfer)?;
+    starts
+        .iter()
+        .map(|start| {
+            let end = scheme.carry(transfer, &stations, start, |_, _| {})?;
+            Ok(OurCarried {
+                last: end.quality,
+                evaluations: end.evaluations,
+                stationarity: end.stationarity,
             })
         })
         .collect()
@@ -211,12 +265,7 @@ fn drawn(
     let (Some((from, grasp)), Some(to)) = (first, set.objects.last()) else {
         return Ok(None);
     };
-    let transfer = Transfer {
-        from: &from.surface,
-        to: &to.surface,
-        convention: &run.convention,
-        object_origin: to.object_origin(),
-    };
+    let transfer = transfer_between(run, from, to);
     let shapes = plan.transfer.stations(&transfer)?;
     let mut ends: Vec<(f64, Vec<Direction>, f64)> = Vec::new();
     let keep = |t: f64, step: &moduli::Step| {
@@ -268,8 +317,8 @@ fn count(run: &Run, from: &str, carried: &[&Carried], unstable_in_paper: Option<
             .filter(|q| !is_stable(**q, &run.convention))
             .count()
     };
-    let (initial, last, naive) = (list(|c| c.initial), list(|c| c.last), list(|c| c.naive));
-    let ours = list(|c| c.ours);
+    let (initial, last) = (list(|c| c.paper.initial), list(|c| c.paper.last));
+    let (naive, ours) = (list(|c| c.paper.naive), list(|c| c.ours.last));
     let total = |pick: fn(&Carried) -> usize| carried.iter().map(|c| pick(c)).sum::<usize>();
     Count {
         from: from.to_owned(),
@@ -282,11 +331,14 @@ fn count(run: &Run, from: &str, carried: &[&Carried], unstable_in_paper: Option<
         mean_naive: mean(&naive),
         unstable_ours: unstable(&ours),
         mean_ours: mean(&ours),
-        evaluations_ratio: share(total(|c| c.evaluations), total(|c| c.evaluations_ours)),
+        evaluations_ratio: share(
+            total(|c| c.paper.evaluations),
+            total(|c| c.ours.evaluations),
+        ),
     }
 }
 
-fn table(plan: &Plan, counts: &[Count]) -> Table {
+fn table(plan: &Plan, counts: &[Count], times: &ThreadSeconds) -> Table {
     let mut table = Table::new(
         format!(
             "Sec. IV-E: {} stations of {} steps, the best {} grasps of {} poses (paper: {}, {}, {}, {})",
@@ -336,6 +388,10 @@ fn table(plan: &Plan, counts: &[Count]) -> Table {
             number(c.evaluations_ratio, 1),
         ]);
     }
+    table.note(format!(
+        "Seconds of all transfers, summed over threads: {:.1}, ours {:.1}",
+        times.paper, times.ours
+    ));
     table.note("evaluations: qualities that the paper's transfer computes for one of ours");
     table.note(format!(
         "The paper carried {} grasps, {} of which ended unstable",

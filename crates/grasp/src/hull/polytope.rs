@@ -40,8 +40,10 @@ pub(crate) struct Facet {
     links: [Link; 6],
     /// Set once the plane has been replaced by the best one for this simplex.
     pub(crate) settled: bool,
-    /// Set once no point is known to lie above.
-    pub(crate) finished: bool,
+    /// The count of moves at which no point was known to lie above; 0 for never.
+    pub(crate) finished: u32,
+    /// The count of moves for which the plane holds; an earlier one bounds less and less.
+    pub(crate) moved: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -61,8 +63,15 @@ pub(crate) struct Polytope {
     /// What the caller calls each vertex.
     pub(crate) tags: Vec<u32>,
     pub(crate) facets: Vec<Facet>,
-    /// Offset of each facet, +∞ where the slot is free.
+    /// Offset of each facet plus `drift`, +∞ where the slot is free. Of a facet whose plane is out
+    /// of date: a bound, plus `drift`, of the distance of its simplex from the origin.
     pub(crate) keys: Vec<f64>,
+    /// How far any vertex can have moved since `start`: the sum of the largest moves.
+    pub(crate) drift: f64,
+    /// Times that the vertices moved since `start`, plus one.
+    pub(crate) moves: u32,
+    /// A facet that was the nearest before the last move.
+    pub(super) hint: usize,
     /// Facets made since `start`.
     pub(crate) created: usize,
     /// The largest residual of any plane since `start`.
@@ -72,7 +81,7 @@ pub(crate) struct Polytope {
     /// The facets that the last `start` or `insert` made.
     pub(crate) fresh: Vec<u32>,
     free: Vec<u32>,
-    visible: Vec<u32>,
+    pub(super) visible: Vec<u32>,
     border: Vec<Link>,
     table: Vec<Slot>,
     epoch: u32,
@@ -92,6 +101,8 @@ impl Polytope {
         self.created = 0;
         self.worst_residual = 0.0;
         self.rounding = 0.0;
+        self.drift = 0.0;
+        self.moves = 1;
         points.iter().for_each(|p| self.widen(p));
         // Stamps go on counting, so that old ones mean nothing; long before they run out, anew.
         if self.epoch > u32::MAX / 2 {
@@ -113,15 +124,7 @@ impl Polytope {
             let slot = omitted - usize::from(omitted > other as usize);
             Link::new(u32::from(other), slot)
         });
-        self.push(Facet {
-            plane,
-            height: 0.0,
-            epoch: 0,
-            vertices,
-            links,
-            settled: false,
-            finished: false,
-        });
+        self.push(vertices, plane, links);
     }
 
     /// The facet with the smallest offset.
@@ -135,12 +138,37 @@ impl Polytope {
         best.0
     }
 
-    /// The unfinished facet with the smallest offset, up to `level`.
-    pub(crate) fn nearest_open(&self, level: f64) -> Option<usize> {
-        let open = |&f: &usize| self.keys[f] <= level && !self.facets[f].finished;
-        (0..self.keys.len())
-            .filter(open)
-            .min_by(|&a, &b| self.keys[a].total_cmp(&self.keys[b]))
+    /// The unfinished facets up to `level`; `out` is emptied before. The nearest first in a new
+    /// polytope, where order saves work.
+    pub(crate) fn open(&self, level: f64, out: &mut Vec<u32>) {
+        out.clear();
+        let open = |f: &u32| self.is_open(*f as usize, level);
+        out.extend((0..self.keys.len() as u32).filter(open));
+        if self.moves == 1 {
+            self.sort(out);
+        }
+    }
+
+    /// The facets up to `level`, the nearest first; `out` is emptied before.
+    pub(crate) fn up_to(&self, level: f64, out: &mut Vec<u32>) {
+        out.clear();
+        out.extend((0..self.keys.len() as u32).filter(|&f| self.bound(f as usize) <= level));
+        self.sort(out);
+    }
+
+    fn sort(&self, out: &mut [u32]) {
+        let key = |f: &u32| self.keys[*f as usize];
+        out.sort_unstable_by(|a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
+    }
+
+    /// Whether a facet is up to `level` and not finished.
+    pub(crate) fn is_open(&self, facet: usize, level: f64) -> bool {
+        self.bound(facet) <= level && self.facets[facet].finished != self.moves
+    }
+
+    /// The distance that a facet's simplex keeps from the origin; of a present plane the offset.
+    pub(crate) fn bound(&self, facet: usize) -> f64 {
+        self.keys[facet] - self.drift
     }
 
     /// The numbers of the facets of the present surface.
@@ -164,7 +192,7 @@ impl Polytope {
     pub(crate) fn settle(&mut self, facet: usize, plane: Plane) {
         self.facets[facet].plane = plane;
         self.facets[facet].settled = true;
-        self.keys[facet] = plane.offset;
+        self.keys[facet] = plane.offset + self.drift;
     }
 
     /// Adds a vertex that lies above facet `seed` by more than `tolerance`.
@@ -208,15 +236,16 @@ impl Polytope {
             next += 1;
             let links = self.facets[facet as usize].links;
             for (slot, link) in links.into_iter().enumerate() {
-                let other = &mut self.facets[link.facet()];
-                if other.epoch != epoch {
+                if self.facets[link.facet()].epoch != epoch {
+                    self.freshen(link.facet());
+                    let other = &mut self.facets[link.facet()];
                     other.epoch = epoch;
                     other.height = other.plane.height(point);
                     if other.height > tolerance {
                         self.visible.push(link.facet() as u32);
                     }
                 }
-                if other.height <= tolerance {
+                if self.facets[link.facet()].height <= tolerance {
                     self.border.push(Link::new(facet, slot));
                 }
             }
@@ -237,15 +266,7 @@ impl Polytope {
         };
         let mut links = [Link::NONE; 6];
         links[5] = beyond;
-        let facet = self.push(Facet {
-            plane,
-            height: 0.0,
-            epoch: 0,
-            vertices,
-            links,
-            settled: false,
-            finished: false,
-        });
+        let facet = self.push(vertices, plane, links);
         self.facets[beyond.facet()].links[beyond.slot()] = Link::new(facet, 5);
         // A ridge holds the new vertex and four others, 16 bits each: the rest of five when one goes.
         let five = vertices[..5]
@@ -308,18 +329,28 @@ impl Polytope {
         }
     }
 
-    fn plane_through(&self, vertices: &[u16; 6]) -> Plane {
+    pub(super) fn plane_through(&self, vertices: &[u16; 6]) -> Plane {
         Plane::through(&vertices.map(|v| self.vertices[v as usize]))
     }
 
-    fn widen(&mut self, point: &V6) {
+    pub(super) fn widen(&mut self, point: &V6) {
         self.rounding = self.rounding.max(4.0 * f64::EPSILON * norm(point));
     }
 
-    fn push(&mut self, facet: Facet) -> u32 {
+    fn push(&mut self, vertices: [u16; 6], plane: Plane, links: [Link; 6]) -> u32 {
+        let facet = Facet {
+            plane,
+            height: 0.0,
+            epoch: 0,
+            vertices,
+            links,
+            settled: false,
+            finished: 0,
+            moved: self.moves,
+        };
         self.created += 1;
-        self.worst_residual = self.worst_residual.max(facet.plane.residual);
-        let key = facet.plane.offset;
+        self.worst_residual = self.worst_residual.max(plane.residual);
+        let key = plane.offset + self.drift;
         let at = match self.free.pop() {
             Some(at) => {
                 self.facets[at as usize] = facet;

@@ -30,6 +30,8 @@ pub(crate) enum Ball {
 pub(crate) struct Search {
     pub(crate) polytope: Polytope,
     pub(crate) corral: Corral,
+    /// Facets to be looked at.
+    open: Vec<u32>,
 }
 
 /// Heights below this part of the longest point are rounding.
@@ -118,21 +120,62 @@ impl Search {
 
     /// Goes on, after a ball was found, until no point lies above a facet of offset up to `level`
     /// by more than `gap` (or rounding).
+    ///
+    /// False where a polytope that was moved needs to be made anew ([`Search::ball_again`]).
     pub(crate) fn finish(
         &mut self,
         source: &mut impl Support,
         level: f64,
         gap: f64,
         tolerance: f64,
-    ) {
-        while let Some(facet) = self.polytope.nearest_open(level) {
-            let plane = self.polytope.facets[facet].plane;
-            let (point, tag) = source.support(&plane.normal);
-            let above = dot(&plane.normal, &point) - plane.offset > gap.max(tolerance);
-            if !(above && self.expand(facet, &point, tag, tolerance)) {
-                self.polytope.facets[facet].finished = true;
+    ) -> bool {
+        let mut open = std::mem::take(&mut self.open);
+        let mut done = true;
+        loop {
+            self.polytope.open(level, &mut open);
+            if open.is_empty() || !done {
+                break;
+            }
+            for &facet in &open {
+                // What was added since may have taken it away.
+                if done && self.polytope.is_open(facet as usize, level) {
+                    done = self.finish_facet(
+                        source,
+                        facet as usize,
+                        level,
+                        gap.max(tolerance),
+                        tolerance,
+                    );
+                }
             }
         }
+        self.open = open;
+        done
+    }
+
+    /// Marks a facet finished or adds the point above it; false as in [`Search::finish`].
+    fn finish_facet(
+        &mut self,
+        source: &mut impl Support,
+        facet: usize,
+        level: f64,
+        gap: f64,
+        tolerance: f64,
+    ) -> bool {
+        self.polytope.freshen(facet);
+        if self.polytope.bound(facet) > level {
+            return true;
+        }
+        let plane = self.polytope.facets[facet].plane;
+        let (point, tag) = source.support(&plane.normal);
+        let above = dot(&plane.normal, &point) - plane.offset > gap;
+        if above && self.polytope.moves > 1 {
+            return self.expand_moved(facet, &point, tag, tolerance);
+        }
+        if !(above && self.expand(facet, &point, tag, tolerance)) {
+            self.polytope.facets[facet].finished = self.polytope.moves;
+        }
+        true
     }
 
     /// Adds the point above the facet; false when nothing more can be done there.
@@ -148,7 +191,7 @@ impl Search {
         }
         let plane = nearest_plane(&polytope.corners(facet));
         match plane {
-            Some(plane) if plane.offset > polytope.keys[facet] => polytope.settle(facet, plane),
+            Some(plane) if plane.offset > polytope.bound(facet) => polytope.settle(facet, plane),
             _ => {
                 let plane = polytope.facets[facet].plane;
                 polytope.settle(facet, plane);

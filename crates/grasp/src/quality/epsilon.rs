@@ -85,7 +85,7 @@ pub fn epsilon(
 
 /// The same for any fingers.
 pub fn epsilon_of(setup: &Setup<'_>, workspace: &mut Workspace) -> Result<Epsilon, QualityError> {
-    workspace.load(setup)?;
+    workspace.load_next(setup)?;
     let ball = workspace.ball(requested_gap(setup.convention.edges));
     Ok(Epsilon::from_ball(&ball))
 }

@@ -5,7 +5,7 @@ use super::polish::touching_face;
 use super::workspace::{Workspace, requested_gap};
 use crate::finger::Setup;
 use crate::hull::min_norm::{Corral, Effort, Nearest};
-use crate::hull::plane::{V6, norm, scale};
+use crate::hull::plane::{V6, norm, scale, sub};
 use crate::hull::search::Ball;
 use crate::hull::support::PointList;
 use crate::wrench::Wrench;
@@ -89,7 +89,7 @@ pub struct Margin {
 /// the face that the ball touches, found to rounding by Newton's method where the touching point is
 /// regular, whatever the width of the interval.
 pub fn margin(setup: &Setup<'_>, workspace: &mut Workspace) -> Result<Margin, QualityError> {
-    workspace.load(setup)?;
+    workspace.load_next(setup)?;
     match workspace.ball(requested_gap(setup.convention.edges)) {
         Ball::Open { direction } => Ok(outside(workspace, &direction)),
         Ball::Closed {
@@ -118,10 +118,12 @@ pub fn margin(setup: &Setup<'_>, workspace: &mut Workspace) -> Result<Margin, Qu
     }
 }
 
-/// The facets within `band` of the nearest one, that one first; nothing for an open grasp.
+/// The facets within `band` of the nearest one, that one first, then by their offsets; nothing for an
+/// open grasp.
 ///
 /// Q is the least of all facet offsets, so these are what a step of that size can bring into play.
-/// Facets of more than six wrenches appear as several simplices.
+/// Simplices of one plane are one facet where a whole pyramid's base makes them several; where points
+/// of different contacts happen to lie in one plane they appear each, since they will part.
 pub fn near_active_facets(
     setup: &Setup<'_>,
     band: f64,
@@ -137,12 +139,47 @@ pub fn near_active_facets(
     let gap = requested_gap(setup.convention.edges);
     let level = facet.offset + band;
     let nearest = workspace.finish(level, gap);
-    for at in workspace.search.polytope.alive() {
-        if at != nearest && workspace.search.polytope.keys[at] <= level {
-            out.extend(simplex_facet(workspace, at));
+    let mut near = std::mem::take(&mut workspace.near);
+    let mut taken = std::mem::take(&mut workspace.taken);
+    workspace.search.polytope.up_to(level, &mut near);
+    taken.clear();
+    taken.push(nearest as u32);
+    for &at in &near {
+        if !taken
+            .iter()
+            .any(|&t| same_facet(workspace, t as usize, at as usize))
+            && let Some(facet) = simplex_facet(workspace, at as usize)
+        {
+            taken.push(at);
+            out.push(facet);
         }
     }
+    (workspace.near, workspace.taken) = (near, taken);
     Ok(())
+}
+
+/// Normals nearer than this belong to one plane.
+const ONE_PLANE: f64 = 1e-9;
+
+/// Whether two simplices lie in one plane and will go on doing so: what they have of each contact is
+/// the same, or spans the same base of a pyramid.
+fn same_facet(workspace: &Workspace, a: usize, b: usize) -> bool {
+    let polytope = &workspace.search.polytope;
+    let (one, other) = (&polytope.facets[a], &polytope.facets[b]);
+    if norm(&sub(&one.plane.normal, &other.plane.normal)) > ONE_PLANE || workspace.round {
+        return a == b;
+    }
+    let (one, other) = (one.vertices, other.vertices);
+    let owner = |v: &u16| workspace.owner(polytope.tags[*v as usize]);
+    let of = |list: &[u16; 6], contact| list.iter().filter(|v| owner(v) == contact).count();
+    // A base is flat where there is no torsion: three of its points are as good as any.
+    workspace.cones.iter().all(|cone| {
+        let contact = cone.contact as usize;
+        let flat = cone.axes[2] == [0.0; 6];
+        let mine = |v: &&u16| owner(v) == contact;
+        flat && of(&one, contact) >= 3 && of(&other, contact) >= 3
+            || one.iter().filter(mine).eq(other.iter().filter(mine))
+    })
 }
 
 /// The nearest face of a hull that does not hold the origin inside.

@@ -13,6 +13,8 @@ use crate::model::{Geometry, LinkGeometry};
 const LEAST_HULL_THICKNESS: f64 = 1e-6;
 /// Hulls of more points are simplified to the extreme ones in this many directions.
 const HULL_DIRECTIONS: usize = 96;
+/// Planes that bound a hull besides those of its faces.
+const BOUND_DIRECTIONS: usize = 64;
 
 /// Why geometry cannot take part in collision tests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
@@ -46,7 +48,8 @@ pub(crate) struct PointDistance {
 #[derive(Debug, Clone)]
 struct Hull {
     body: ConvexPolyhedron,
-    /// Outward unit normals of the faces and their heights over that point.
+    /// Outward unit normals of planes that touch the hull, its faces among them, and their heights
+    /// over that point.
     faces: Vec<(Vector3<f64>, f64)>,
     /// Radius of a sphere about that point inside the hull.
     inner_radius: f64,
@@ -54,13 +57,12 @@ struct Hull {
 
 impl Hull {
     fn new(body: ConvexPolyhedron) -> Self {
-        let faces: Vec<_> = body
-            .faces()
-            .iter()
-            .map(|face| {
-                let normal = from_parry(face.normal);
-                (normal, support_of(&body, &normal))
-            })
+        // Beyond an edge the planes of its two faces are a poor bound: planes all around help.
+        let around = sph::direction::even_directions(BOUND_DIRECTIONS);
+        let normals = body.faces().iter().map(|face| from_parry(face.normal));
+        let faces: Vec<_> = normals
+            .chain(around.iter().map(|n| n.into_inner()))
+            .map(|normal| (normal, support_of(&body, &normal)))
             .collect();
         let least = faces.iter().map(|f| f.1).fold(f64::INFINITY, f64::min);
         Hull {
@@ -74,7 +76,7 @@ impl Hull {
         }
     }
 
-    /// The farthest face plane gives the lower bound, the inner sphere the upper one.
+    /// The farthest plane gives the lower bound, the inner sphere the upper one.
     fn distance(&self, p: &Vector3<f64>) -> PointDistance {
         let mut best = PointDistance {
             lower: 0.0,

@@ -1,5 +1,7 @@
 //! Names of a spec turned into indices of a model, everything checked on the way.
 
+use nalgebra::{Point3, UnitVector3, Vector3};
+
 use super::{Finger, HandError, Preshape};
 use crate::collision::{ConvexPiece, LinkShape};
 use crate::hand_spec::{FingerSpec, HandSpec, PreshapeSpec};
@@ -11,6 +13,32 @@ pub(super) fn bad_number(place: &str, value: f64, wanted: &'static str) -> HandE
         value,
         wanted,
     }
+}
+
+/// The palm must be the root link.
+pub(super) fn palm(model: &HandModel, spec: &HandSpec) -> Result<(), HandError> {
+    let root = &model.links[0].name;
+    if *root == spec.palm {
+        return Ok(());
+    }
+    Err(HandError::Palm {
+        palm: spec.palm.clone(),
+        root: root.clone(),
+    })
+}
+
+/// Direction and point of the line of approach.
+pub(super) fn approach(spec: &HandSpec) -> Result<(UnitVector3<f64>, Point3<f64>), HandError> {
+    let axis = Vector3::from(spec.approach_axis);
+    let direction = UnitVector3::try_new(axis, 1e-9)
+        .filter(|a| a.iter().all(|c| c.is_finite()))
+        .ok_or_else(|| bad_number("approach_axis", axis.norm(), "a direction"))?;
+    for value in spec.approach_point {
+        if !value.is_finite() {
+            return Err(bad_number("approach_point", value, "finite"));
+        }
+    }
+    Ok((direction, Point3::from(spec.approach_point)))
 }
 
 pub(super) fn standoff([least, greatest]: [f64; 2]) -> Result<(f64, f64), HandError> {
@@ -87,7 +115,11 @@ fn at_least(place: &str, what: &'static str, count: usize, least: usize) -> Resu
     })
 }
 
-fn finger(model: &HandModel, shapes: &[LinkShape], spec: &FingerSpec) -> Result<Finger, HandError> {
+pub(super) fn finger(
+    model: &HandModel,
+    shapes: &[LinkShape],
+    spec: &FingerSpec,
+) -> Result<Finger, HandError> {
     let place = format!("finger '{}'", spec.name);
     at_least(&place, "tips", spec.tips.len(), 1)?;
     at_least(&place, "closing joints", spec.closing.len(), 1)?;
@@ -130,7 +162,7 @@ fn finger(model: &HandModel, shapes: &[LinkShape], spec: &FingerSpec) -> Result<
     })
 }
 
-fn find_link(model: &HandModel, place: &str, name: &str) -> Result<usize, HandError> {
+pub(super) fn find_link(model: &HandModel, place: &str, name: &str) -> Result<usize, HandError> {
     model
         .link_index(name)
         .ok_or_else(|| HandError::UnknownLink {
@@ -139,7 +171,7 @@ fn find_link(model: &HandModel, place: &str, name: &str) -> Result<usize, HandEr
         })
 }
 
-fn find_driven(model: &HandModel, place: &str, name: &str) -> Result<usize, HandError> {
+pub(super) fn find_driven(model: &HandModel, place: &str, name: &str) -> Result<usize, HandError> {
     model
         .driven_index(name)
         .ok_or_else(|| HandError::UnknownJoint {

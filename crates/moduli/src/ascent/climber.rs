@@ -7,6 +7,7 @@ use sph::direction::tangent_frame;
 
 use super::bundle::{Bundle, Promise};
 use super::monotone::MonotoneAscent;
+use super::walls::{Crossed, Walls};
 use crate::constraints::Constraints;
 use crate::quality::{LinearPieces, Quality, dot, moved};
 
@@ -15,9 +16,16 @@ const ACCEPT: f64 = 0.1;
 /// First move, radians.
 const FIRST_MOVE: f64 = 0.1;
 /// Pieces of rejected steps are added up to this many.
-const MOST_PIECES: usize = 64;
+const MOST_PIECES: usize = 96;
 /// ρ of the stationarity that is reported.
 const REPORT_RHO: f64 = 0.01;
+
+/// What became of a step: with the share of the promise that was kept, or stopped by a new wall.
+enum Outcome {
+    Taken(f64),
+    Refused(f64),
+    Walled,
+}
 
 /// Where a climb stands, with everything that steps reuse.
 pub(super) struct Climber<'a, S, Q> {
@@ -29,6 +37,7 @@ pub(super) struct Climber<'a, S, Q> {
     there: Vec<Direction>,
     pieces: LinearPieces,
     limits: LinearPieces,
+    walls: Walls,
     bundle: Bundle,
     slope: Vec<f64>,
 }
@@ -50,11 +59,25 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
             value,
             pieces: LinearPieces::default(),
             limits: LinearPieces::default(),
+            walls: Walls::default(),
             bundle: Bundle::default(),
             slope: Vec::new(),
         };
+        climber.reserve();
         climber.linearise()?;
         Ok(climber)
+    }
+
+    /// Room for all that steps can need, so that none of them allocates.
+    fn reserve(&mut self) {
+        let contacts = self.here.len();
+        for pieces in [&mut self.pieces, &mut self.limits] {
+            pieces.reset(contacts);
+            pieces.reserve(MOST_PIECES);
+        }
+        self.walls.reserve(contacts);
+        self.bundle.reserve(2 * contacts);
+        self.slope.reserve(2 * contacts);
     }
 
     /// Climbs until no slope, no gain or no steps are left, or until `enough`; `seen` gets every
@@ -67,6 +90,7 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
     ) -> Result<(), QualityError> {
         let mut rho = FIRST_MOVE / self.steepest().max(f64::MIN_POSITIVE);
         let mut fresh = true;
+        let mut refused = false;
         for _ in 0..settings.steps {
             if !(self.steepest() > settings.stationarity && self.value < enough) {
                 break;
@@ -79,19 +103,26 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
             }
             if !(step.gain > settings.least_gain && step.slope > settings.stationarity) {
                 // Nothing to gain with this much freedom; with more there may be.
-                if rho >= 1.0 || step.slope <= settings.stationarity {
+                if rho < 1.0 && step.slope > settings.stationarity && !refused {
+                    rho *= 8.0;
+                    fresh = false;
+                    continue;
+                }
+                if !self.cross_a_wall(settings.least_gain)? {
                     break;
                 }
-                rho *= 8.0;
-                fresh = false;
+                rho = FIRST_MOVE / self.steepest().max(f64::MIN_POSITIVE);
+                (fresh, refused) = (true, false);
                 continue;
             }
-            let kept_promise = self.try_step(&step)?;
-            fresh = kept_promise >= ACCEPT;
-            rho *= match kept_promise {
-                k if k > 0.75 => 2.0,
-                k if k > 0.3 => 1.0,
-                k if k > 0.0 => 0.5,
+            let outcome = self.try_step(&step)?;
+            fresh = matches!(outcome, Outcome::Taken(_));
+            refused = !fresh;
+            rho *= match outcome {
+                Outcome::Taken(k) | Outcome::Refused(k) if k > 0.75 => 2.0,
+                Outcome::Taken(k) | Outcome::Refused(k) if k > 0.3 => 1.0,
+                Outcome::Taken(k) | Outcome::Refused(k) if k > 0.0 => 0.5,
+                Outcome::Walled => 1.0,
                 _ => 0.25,
             };
         }
@@ -106,32 +137,77 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
             .slope
     }
 
-    /// Moves if the gain is a fair share of the promise; returns that share.
-    fn try_step(&mut self, step: &Promise) -> Result<f64, QualityError> {
-        let moves = self.bundle.moves();
-        self.there.clear();
-        let moved_here = self.here.iter().zip(moves.chunks_exact(2));
-        self.there.extend(moved_here.map(|(p, u)| moved(p, u)));
+    /// Moves if the gain is a fair share of the promise.
+    fn try_step(&mut self, step: &Promise) -> Result<Outcome, QualityError> {
+        self.look_at_moves();
+        self.walls
+            .keep(self.surface, self.quality, &self.here, &mut self.there);
         if !self.admitted()? {
-            return Ok(-1.0);
+            return Ok(Outcome::Refused(-1.0));
         }
         let value = self.quality.value(self.surface, &self.there)?;
         let gain = value - self.value;
         let kept_promise = gain / step.gain;
         if kept_promise >= ACCEPT && gain > 0.0 {
-            std::mem::swap(&mut self.here, &mut self.there);
-            self.value = value;
-            self.linearise()?;
-            return Ok(kept_promise);
+            self.arrive(value)?;
+            return Ok(Outcome::Taken(kept_promise));
+        }
+        let crossed = self
+            .walls
+            .raise(self.surface, self.quality, &self.here, &self.there);
+        match crossed {
+            Crossed::Nothing => {}
+            // What holds beyond a jump says nothing about this side.
+            Crossed::New => {
+                self.limit()?;
+                return Ok(Outcome::Walled);
+            }
+            Crossed::Standing => return Ok(Outcome::Refused(-1.0)),
         }
         if value.is_finite() && self.pieces.len() < MOST_PIECES {
             self.remember(value)?;
         }
-        Ok(if kept_promise.is_nan() {
+        Ok(Outcome::Refused(if kept_promise.is_nan() {
             -1.0
         } else {
             kept_promise.min(0.99 * ACCEPT)
-        })
+        }))
+    }
+
+    /// The trial state after the bundle's moves.
+    fn look_at_moves(&mut self) {
+        let moves = self.bundle.moves();
+        self.there.clear();
+        let moved_here = self.here.iter().zip(moves.chunks_exact(2));
+        self.there.extend(moved_here.map(|(p, u)| moved(p, u)));
+    }
+
+    /// Takes the trial state.
+    fn arrive(&mut self, value: f64) -> Result<(), QualityError> {
+        self.walls
+            .leave(self.surface, self.quality, &self.here, &self.there);
+        std::mem::swap(&mut self.here, &mut self.there);
+        self.value = value;
+        self.linearise()
+    }
+
+    /// Goes just over the first near wall beyond which the quality is higher.
+    fn cross_a_wall(&mut self, least_gain: f64) -> Result<bool, QualityError> {
+        for wall in 0..self.walls.len() {
+            if !self.walls.step_over(wall, self.bundle.moves_mut()) {
+                continue;
+            }
+            self.look_at_moves();
+            if !self.admitted()? {
+                continue;
+            }
+            let value = self.quality.value(self.surface, &self.there)?;
+            if value > self.value + least_gain {
+                self.arrive(value)?;
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// Whether the trial state keeps every limit, after a repair of what curvature took away.
@@ -139,9 +215,11 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         if self.constraints.is_empty() {
             return Ok(true);
         }
-        match self.constraints.repair(self.surface, &self.there) {
-            Ok(inside) => self.there = inside,
-            Err(_) => return Ok(false),
+        let repaired = self
+            .constraints
+            .repair_in_place(self.surface, &mut self.there);
+        if repaired.is_err() {
+            return Ok(false);
         }
         self.constraints.closed(self.surface, &self.there)
     }
@@ -149,8 +227,16 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
     fn linearise(&mut self) -> Result<(), QualityError> {
         self.quality
             .linearise(self.surface, &self.here, &mut self.pieces)?;
+        self.walls.around(self.surface, self.quality, &self.here);
+        self.limit()
+    }
+
+    /// The limits of a step: those of the constraints, and the walls that stand.
+    fn limit(&mut self) -> Result<(), QualityError> {
         self.constraints
-            .linearise(self.surface, &self.here, &mut self.limits)
+            .linearise(self.surface, &self.here, &mut self.limits)?;
+        self.walls.write(&mut self.limits);
+        Ok(())
     }
 
     /// Adds the model at a rejected state, seen from here: what decided there may not have been

@@ -145,6 +145,7 @@ impl MonotoneAscent {
         mut trace: impl FnMut(&Step),
     ) -> Result<Ascent, QualityError> {
         let before = quality.evaluations();
+        quality.forget();
         let from = start.to_vec();
         let mut best = self.climb_once(surface, from, quality, constraints, enough, &mut trace)?;
         for k in 0..self.restarts {

@@ -35,6 +35,7 @@ impl PaperAscent {
         mut trace: impl FnMut(&Step),
     ) -> Result<Ascent, QualityError> {
         let before = objective.evaluations();
+        objective.forget();
         let mut angles = to_angles(start);
         let mut gradient = vec![0.0; angles.len()];
         let mut directions = start.to_vec();

@@ -1,9 +1,11 @@
 //! Many transfers: every grasp of every object to every other object.
 
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use grasp::Convention;
 use nalgebra::Point3;
+use rayon::prelude::*;
 use shape::RadialField;
 use sph::Direction;
 
@@ -85,41 +87,64 @@ pub struct Progress {
     pub total: usize,
 }
 
-/// Does the jobs that have no result yet, in order, and puts the results at the jobs' indices.
+/// Does the jobs that have no result yet, over the threads of the caller's pool, and puts the
+/// results at the jobs' indices.
 ///
 /// `results` is what an earlier run left: shorter, or with gaps, or empty. After every job
-/// `progress` sees its result and may break; then, as after an error, what was done stays in
-/// `results` and the next call goes on from there. For several threads, split the jobs and the
-/// results; see [`Matrix::carry`].
-pub fn run_jobs<J, R, E>(
+/// `progress` sees its result and may break, which cancels the run; then, as after an error, what
+/// was done stays in `results` and the next call goes on from there. A job depends on nothing but
+/// itself, so the results do not depend on the number of threads or on interruptions.
+///
+/// Errors: that of the first job, by index, among those that failed; no job begins after a failure.
+pub fn run_jobs<J: Sync, R: Send, E: Send>(
     jobs: &[J],
     results: &mut Vec<Option<R>>,
-    mut one: impl FnMut(&J) -> Result<R, E>,
-    mut progress: impl FnMut(&Progress, &R) -> ControlFlow<()>,
+    one: impl Fn(&J) -> Result<R, E> + Sync,
+    progress: impl Fn(&Progress, &R) -> ControlFlow<()> + Sync,
 ) -> Result<ControlFlow<()>, E> {
     results.truncate(jobs.len());
     results.resize_with(jobs.len(), || None);
-    let mut done = results.iter().flatten().count();
-    for (index, (job, slot)) in jobs.iter().zip(results.iter_mut()).enumerate() {
-        if slot.is_some() {
-            continue;
-        }
-        let result = slot.insert(one(job)?);
-        done += 1;
-        let now = Progress {
-            job: index,
-            done,
-            total: jobs.len(),
-        };
-        if progress(&now, result).is_break() {
-            return Ok(ControlFlow::Break(()));
-        }
+    let done = AtomicUsize::new(results.iter().flatten().count());
+    let stop = AtomicBool::new(false);
+    let errors: Vec<E> = jobs
+        .par_iter()
+        .zip(results.par_iter_mut())
+        .enumerate()
+        .filter(|(_, (_, slot))| slot.is_none())
+        .filter_map(|(index, (job, slot))| {
+            if stop.load(Ordering::Relaxed) {
+                return None;
+            }
+            match one(job) {
+                Ok(result) => {
+                    let now = Progress {
+                        job: index,
+                        done: 1 + done.fetch_add(1, Ordering::Relaxed),
+                        total: jobs.len(),
+                    };
+                    if progress(&now, slot.insert(result)).is_break() {
+                        stop.store(true, Ordering::Relaxed);
+                    }
+                    None
+                }
+                Err(error) => {
+                    stop.store(true, Ordering::Relaxed);
+                    Some(error)
+                }
+            }
+        })
+        .collect();
+    match errors.into_iter().next() {
+        Some(error) => Err(error),
+        None if stop.into_inner() => Ok(ControlFlow::Break(())),
+        None => Ok(ControlFlow::Continue(())),
     }
-    Ok(ControlFlow::Continue(()))
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Mutex;
+
     use super::*;
 
     #[test]
@@ -142,51 +167,46 @@ mod tests {
 
     #[test]
     fn a_run_stops_when_told_and_goes_on_where_it_was() {
-        let jobs = [1, 2, 3, 4, 5];
-        let mut results = vec![None, Some(20)];
-        let mut calls = Vec::new();
-        let ten_times = |calls: &mut Vec<i32>, j: &i32| {
-            calls.push(*j);
-            Ok::<i32, String>(10 * j)
+        let jobs: Vec<usize> = (0..200).collect();
+        let mut results = vec![None, Some(10)];
+        let calls = Mutex::new(Vec::new());
+        let ten_times = |j: &usize| {
+            calls.lock().unwrap().push(*j);
+            Ok::<usize, String>(10 * j)
         };
-        let stopped = run_jobs(
-            &jobs,
-            &mut results,
-            |j| ten_times(&mut calls, j),
-            |now, _| {
-                if now.done == 3 {
-                    ControlFlow::Break(())
-                } else {
-                    ControlFlow::Continue(())
-                }
-            },
-        );
-        assert_eq!(stopped, Ok(ControlFlow::Break(())));
-        assert_eq!(results, [Some(10), Some(20), Some(30), None, None]);
-        let rest = run_jobs(
-            &jobs,
-            &mut results,
-            |j| ten_times(&mut calls, j),
-            |now, _| {
-                assert_eq!(now.total, 5);
+        let stopped = run_jobs(&jobs, &mut results, ten_times, |now, _| {
+            if now.done >= 20 {
+                ControlFlow::Break(())
+            } else {
                 ControlFlow::Continue(())
-            },
-        );
+            }
+        });
+        assert_eq!(stopped, Ok(ControlFlow::Break(())));
+        let done = results.iter().flatten().count();
+        assert!((20..200).contains(&done), "{done}");
+        let rest = run_jobs(&jobs, &mut results, ten_times, |now, result| {
+            assert_eq!((now.total, *result), (200, 10 * now.job));
+            ControlFlow::Continue(())
+        });
         assert_eq!(rest, Ok(ControlFlow::Continue(())));
-        assert_eq!(results, [10, 20, 30, 40, 50].map(Some));
-        assert_eq!(calls, [1, 3, 4, 5]);
+        let all: Vec<_> = (0..200).map(|j| Some(10 * j)).collect();
+        assert_eq!(results, all);
+        let mut calls = calls.into_inner().unwrap();
+        calls.sort_unstable();
+        let once: Vec<usize> = (0..200).filter(|j| *j != 1).collect();
+        assert_eq!(calls, once, "every open job is done once, those given are not");
     }
 
     #[test]
-    fn an_error_keeps_what_was_done() {
-        let mut results = Vec::new();
+    fn an_error_keeps_what_was_done_and_is_that_of_the_first_job() {
+        let mut results = vec![Some(7)];
         let failed = run_jobs(
             &[1, 2, 3],
             &mut results,
-            |j| if *j == 2 { Err("two") } else { Ok(*j) },
+            |j| Err(j.to_string()),
             |_, _| ControlFlow::Continue(()),
         );
-        assert_eq!(failed, Err("two"));
-        assert_eq!(results, [Some(1), None, None]);
+        assert!(failed == Err("2".to_owned()) || failed == Err("3".to_owned()));
+        assert_eq!(results, [Some(7), None, None]);
     }
 }

@@ -6,6 +6,7 @@
   const rows = document.querySelectorAll("#grasps tbody tr");
   const count = data.grasps.length;
   let current = 0;
+  let cameraIsOurs = true;
 
   // A switch that the page does not have is off.
   function isOn(name) {
@@ -16,14 +17,17 @@
   function shownTraces() {
     const traces = data.plot.data.concat(count > 0 ? data.grasps[current] : []);
     for (const trace of traces) {
-      if (trace.meta === "surface") trace.opacity = isOn("glass") ? 0.4 : 1;
-      else if (trace.meta !== "grasp") trace.visible = isOn(trace.meta);
+      if (trace.meta === "surface" || trace.meta === "hand") trace.opacity = isOn("glass") ? 0.4 : 1;
+      if (trace.meta === "surface") continue;
+      if (trace.meta !== "grasp") trace.visible = isOn(trace.meta);
     }
     return traces;
   }
 
   function draw() {
-    // Handing back the same layout keeps the camera where the reader left it.
+    // Until the reader turns the view, every grasp is shown from its own side; handing back the
+    // same layout then keeps the camera where the reader left it.
+    if (cameraIsOurs && count > 0) Object.assign(data.plot.layout.scene.camera, data.cameras[current]);
     Plotly.react(view, shownTraces(), data.plot.layout, data.plot.config);
   }
 
@@ -50,4 +54,8 @@
   });
   const rank = parseInt(location.hash.slice(1), 10);
   select(rank >= 1 && rank <= count ? rank - 1 : 0);
+  // There are events of the view only once it has been drawn.
+  view.on("plotly_relayout", function (change) {
+    if (change["scene.camera"]) cameraIsOurs = false;
+  });
 })();

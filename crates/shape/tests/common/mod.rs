@@ -3,6 +3,13 @@
 
 use std::path::PathBuf;
 
+use nalgebra::{Point3, Vector3};
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, Normal};
+use shape::PointCloud;
+
 /// One line of `objects/index.tsv`.
 pub struct Entry {
     /// Name of the object.
@@ -47,8 +54,31 @@ pub fn index() -> Vec<Entry> {
 }
 
 /// A cloud of the list, in metres.
-pub fn cloud(name: &str) -> Option<shape::PointCloud> {
+pub fn cloud(name: &str) -> Option<PointCloud> {
     let bytes = bytes(&format!("{name}.ply"))?;
     let points = shape::io::read_ply(&bytes).unwrap().points;
-    Some(shape::PointCloud::new(points).unwrap())
+    Some(PointCloud::new(points).unwrap())
+}
+
+/// The cloud with normal noise of a deviation in metres on every coordinate.
+pub fn noisy(cloud: &PointCloud, sigma: f64) -> PointCloud {
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let normal = Normal::new(0.0, sigma).unwrap();
+    let mut move_by = || Vector3::from_fn(|_, _| normal.sample(&mut rng));
+    let points = cloud.points().iter().map(|p| p + move_by()).collect();
+    PointCloud::new(points).unwrap()
+}
+
+/// The points in a random order.
+pub fn shuffled(cloud: &PointCloud, seed: u64) -> Vec<Point3<f64>> {
+    let mut points = cloud.points().to_vec();
+    points.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));
+    points
+}
+
+/// Some points of a cloud, drawn at random.
+pub fn thinned(cloud: &PointCloud, count: usize) -> PointCloud {
+    let mut points = shuffled(cloud, 1);
+    points.truncate(count);
+    PointCloud::new(points).unwrap()
 }

@@ -1,5 +1,7 @@
 //! Conjugate gradients, stopped by an estimate of the error in the energy norm.
 
+use super::lanczos::Lanczos;
+
 /// Decrements that the error estimate looks back on.
 const WINDOW: usize = 4;
 
@@ -10,6 +12,8 @@ pub(super) struct Outcome {
     pub(super) quadratic: f64,
     pub(super) iterations: usize,
     pub(super) converged: bool,
+    /// Whether it went on to [`Limits::fine`].
+    pub(super) fine: bool,
 }
 
 /// How far an iteration goes.
@@ -23,6 +27,17 @@ pub(super) struct Limits {
     pub(super) offset: f64,
     /// ... never asked to be below this.
     pub(super) floor: f64,
+    /// Where the system proves well conditioned, how far it goes on.
+    pub(super) fine: Option<Fine>,
+}
+
+/// A second aim for well conditioned systems.
+#[derive(Clone, Copy)]
+pub(super) struct Fine {
+    /// Largest condition number of CM ...
+    pub(super) condition: f64,
+    /// ... for this share in place of [`Limits::share`].
+    pub(super) share: f64,
 }
 
 impl Limits {
@@ -33,6 +48,7 @@ impl Limits {
             share,
             offset: 0.0,
             floor: 0.0,
+            fine: None,
         }
     }
 }
@@ -61,16 +77,16 @@ pub(super) fn solve(
     let mut z = precondition(&r);
     let mut direction = z.clone();
     let mut energy = dot(&r, &z);
-    let mut recent = [f64::INFINITY; WINDOW];
+    let mut progress = Progress::new(limits);
     for iteration in 0..limits.iterations {
         if energy.is_nan() || energy <= 0.0 {
             // Nothing is left, or the matrix is not positive definite in floating point.
-            return outcome(x, quadratic, iteration, energy == 0.0);
+            return progress.outcome(x, quadratic, iteration, energy == 0.0);
         }
         let image = apply(&direction);
         let curvature = dot(&direction, &image);
         if curvature.is_nan() || curvature <= 0.0 {
-            return outcome(x, quadratic, iteration, false);
+            return progress.outcome(x, quadratic, iteration, false);
         }
         let alpha = energy / curvature;
         for i in 0..x.len() {
@@ -78,28 +94,71 @@ pub(super) fn solve(
             r[i] -= alpha * image[i];
         }
         quadratic -= alpha * energy;
-        recent[iteration % WINDOW] = alpha * energy;
-        let allowed = (limits.share * (limits.offset + quadratic).abs()).max(limits.floor);
-        if recent.iter().sum::<f64>() <= allowed {
-            return outcome(x, quadratic, iteration + 1, true);
+        if progress.suffices(alpha * energy, quadratic) {
+            return progress.outcome(x, quadratic, iteration + 1, true);
         }
         z = precondition(&r);
         let next = dot(&r, &z);
         let beta = next / energy;
+        progress.steps.push(alpha, beta);
         energy = next;
         for (d, z) in direction.iter_mut().zip(&z) {
             *d = z + beta * *d;
         }
     }
-    outcome(x, quadratic, limits.iterations, false)
+    progress.outcome(x, quadratic, limits.iterations, false)
 }
 
-fn outcome(solution: Vec<f64>, quadratic: f64, iterations: usize, converged: bool) -> Outcome {
-    Outcome {
-        solution,
-        quadratic,
-        iterations,
-        converged,
+/// How far an iteration has come.
+struct Progress {
+    limits: Limits,
+    /// The last decrements.
+    recent: [f64; WINDOW],
+    at: usize,
+    steps: Lanczos,
+    /// Whether the fine aim is the one in force.
+    fine: bool,
+}
+
+impl Progress {
+    fn new(limits: Limits) -> Self {
+        Self {
+            limits,
+            recent: [f64::INFINITY; WINDOW],
+            at: 0,
+            steps: Lanczos::default(),
+            fine: false,
+        }
+    }
+
+    /// Whether the error is small enough after one more decrement, which led to `quadratic`.
+    fn suffices(&mut self, decrement: f64, quadratic: f64) -> bool {
+        let limits = &mut self.limits;
+        self.recent[self.at % WINDOW] = decrement;
+        self.at += 1;
+        let error = self.recent.iter().sum::<f64>();
+        let size = (limits.offset + quadratic).abs();
+        if error > (limits.share * size).max(limits.floor) {
+            return false;
+        }
+        let Some(fine) = limits.fine.take() else {
+            return true;
+        };
+        self.fine = self.steps.condition() <= fine.condition;
+        if self.fine {
+            limits.share = fine.share;
+        }
+        error <= limits.share * size
+    }
+
+    fn outcome(&self, x: Vec<f64>, quadratic: f64, iterations: usize, converged: bool) -> Outcome {
+        Outcome {
+            solution: x,
+            quadratic,
+            iterations,
+            converged,
+            fine: self.fine,
+        }
     }
 }
 
@@ -127,6 +186,7 @@ mod tests {
             share: 1e-24,
             offset: 0.0,
             floor: 0.0,
+            fine: None,
         };
         for start in [None, Some(vec![0.5; truth.len()])] {
             let found = solve(apply, <[f64]>::to_vec, &right, start.as_deref(), limits);

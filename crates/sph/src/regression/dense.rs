@@ -1,8 +1,9 @@
 //! The dense Gram matrix, assembled ring by ring, and its Cholesky factor.
 
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::{factor, solve};
 use faer::linalg::matmul::matmul;
-use faer::linalg::solvers::{Llt, Solve};
-use faer::{Accum, Mat, MatRef, Par, Side};
+use faer::{Accum, Mat, MatRef, Par};
 
 use super::Penalty;
 use crate::coefficients::Coefficients;
@@ -19,8 +20,9 @@ pub(super) struct Dense {
 
 /// A Cholesky factor of YᵀWY + penalty.
 pub(super) struct Factor<'a> {
-    llt: Llt<f64>,
-    order: &'a Order,
+    /// The lower triangle; what is above it has no meaning.
+    lower: Mat<f64>,
+    pub(super) order: &'a Order,
     /// Largest pivot over smallest: never above the condition number of the square root.
     pub(super) pivot_ratio: f64,
 }
@@ -41,16 +43,30 @@ impl Dense {
         for (row, &position) in self.order.positions.iter().enumerate() {
             matrix[(row, row)] += penalty.weight(index::degree_order(position).0);
         }
-        let llt = matrix.llt(Side::Lower).ok()?;
-        let lower = llt.L();
-        let pivots = (0..lower.nrows()).map(|i| lower[(i, i)]);
+        let size = matrix.nrows();
+        let scratch = factor::cholesky_in_place_scratch::<f64>(size, shares(), Default::default());
+        factor::cholesky_in_place(
+            matrix.as_mut(),
+            Default::default(),
+            shares(),
+            MemStack::new(&mut MemBuffer::new(scratch)),
+            Default::default(),
+        )
+        .ok()?;
+        let pivots = (0..size).map(|i| matrix[(i, i)]);
         let (least, most) = pivots.fold((f64::INFINITY, 0.0_f64), |(a, b), d| (a.min(d), b.max(d)));
         Some(Factor {
             pivot_ratio: most / least,
             order: &self.order,
-            llt,
+            lower: matrix,
         })
     }
+}
+
+/// Parts that large products are split into: as many on every machine, since the order of additions,
+/// and so the last bits, follow from it.
+fn shares() -> Par {
+    Par::rayon(4)
 }
 
 impl Factor<'_> {
@@ -58,7 +74,7 @@ impl Factor<'_> {
     pub(super) fn solve(&self, right: &[f64]) -> Vec<f64> {
         let positions = &self.order.positions;
         let mut x = Mat::from_fn(positions.len(), 1, |i, _| right[positions[i]]);
-        self.llt.solve_in_place(&mut x);
+        self.solve_in_place(&mut x);
         let mut out = vec![0.0; right.len()];
         for (row, &position) in positions.iter().enumerate() {
             out[position] = x[(row, 0)];
@@ -66,13 +82,27 @@ impl Factor<'_> {
         out
     }
 
+    fn solve_in_place(&self, right: &mut Mat<f64>) {
+        let scratch = solve::solve_in_place_scratch::<f64>(right.nrows(), right.ncols(), shares());
+        let mut memory = MemBuffer::new(scratch);
+        let stack = MemStack::new(&mut memory);
+        solve::solve_in_place(self.lower.as_ref(), right.as_mut(), shares(), stack);
+    }
+
+    /// M⁻¹ in full, in [`Order`].
+    pub(super) fn ordered_inverse(&self) -> Mat<f64> {
+        let size = self.order.positions.len();
+        let mut inner = Mat::<f64>::identity(size, size);
+        self.solve_in_place(&mut inner);
+        inner
+    }
+
     /// M⁻¹ in full, positions l²+l+m.
     pub(super) fn inverse(&self) -> Mat<f64> {
-        let positions = &self.order.positions;
-        let size = positions.len();
-        let inner = self.llt.solve(&Mat::<f64>::identity(size, size));
+        let inner = self.ordered_inverse();
+        let size = inner.nrows();
         let mut rows = vec![0; size];
-        for (row, &position) in positions.iter().enumerate() {
+        for (row, &position) in self.order.positions.iter().enumerate() {
             rows[position] = row;
         }
         Mat::from_fn(size, size, |i, j| inner[(rows[i], rows[j])])
@@ -80,11 +110,11 @@ impl Factor<'_> {
 }
 
 /// Unknowns by order: for each m the cosines l = m … L, then, for m > 0, the sines.
-struct Order {
+pub(super) struct Order {
     /// Position l²+l+m of every row.
     positions: Vec<usize>,
     /// First row of order m's cosines; the sines follow after L−m+1 rows.
-    starts: Vec<usize>,
+    pub(super) starts: Vec<usize>,
 }
 
 impl Order {
@@ -186,7 +216,7 @@ fn assemble(density: &Coefficients, degree: usize, order: &Order) -> Mat<f64> {
 }
 
 /// P̄_l^m at every ring, one rings × (L−m+1) matrix an order.
-fn legendre_tables(degree: usize, nodes: &[f64]) -> Vec<Mat<f64>> {
+pub(super) fn legendre_tables(degree: usize, nodes: &[f64]) -> Vec<Mat<f64>> {
     let legendre = Legendre::new(degree);
     let mut column = vec![0.0; degree + 1];
     (0..=degree)

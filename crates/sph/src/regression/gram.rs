@@ -13,13 +13,13 @@ use rayon::prelude::*;
 
 use super::conjugate::{self, Limits, Outcome, dot};
 use super::dense::{Dense, Factor};
+use super::leverage::quadratic_form;
 use super::likelihood;
 use super::operator::Multiplier;
+use super::points::Points;
 use super::{Method, Penalty, RegressionError, Samples, qr};
 use crate::coefficients::Coefficients;
-use crate::direction::Direction;
 use crate::index;
-use crate::{batch, scattered::Scattered};
 
 /// Up to here a dense factor costs less than iterating.
 const SMALL_DEGREE: usize = 16;
@@ -29,15 +29,14 @@ const DENSE_DEGREE: usize = 80;
 /// A right-hand side, where to start from, and how far to go.
 pub(super) type Task<'a> = (&'a [f64], Option<&'a [f64]>, Limits);
 
-/// M⁻¹ b to a share of its squared size.
-type Solver<'a> = dyn Fn(&[f64], f64) -> Result<Vec<f64>, RegressionError> + 'a;
-
+/// Most iterations where nothing else could serve.
+pub(super) const MOST_ITERATIONS: usize = 5000;
 /// The normal equations of a set of samples at one degree.
 pub struct Gram {
-    degree: usize,
+    pub(super) degree: usize,
     samples: usize,
-    weights: Option<Vec<f64>>,
-    points: Points,
+    pub(super) weights: Option<Vec<f64>>,
+    pub(super) points: Points,
     density: Coefficients,
     /// YᵀWY as multiplication by ρ.
     operator: Multiplier,
@@ -48,7 +47,7 @@ pub struct Gram {
     /// Σ w (fᵢ − mean)².
     sum_squares: f64,
     /// Weighted mean of the values.
-    mean: f64,
+    pub(super) mean: f64,
     dense: OnceLock<Dense>,
 }
 
@@ -146,13 +145,15 @@ impl Gram {
         }
         match method {
             Method::Automatic if self.prefers_dense() => self.by_factor(samples, penalty),
-            Method::Automatic => match self.by_iteration(samples, penalty) {
-                Err(RegressionError::NotConverged { .. }) if self.degree <= DENSE_DEGREE => {
-                    self.by_factor(samples, penalty)
+            Method::Automatic => {
+                match self.by_iteration(samples, penalty, self.most_iterations()) {
+                    Err(RegressionError::NotConverged { .. }) if self.degree <= DENSE_DEGREE => {
+                        self.by_factor(samples, penalty)
+                    }
+                    found => found,
                 }
-                found => found,
-            },
-            Method::Conjugate => self.by_iteration(samples, penalty),
+            }
+            Method::Conjugate => self.by_iteration(samples, penalty, MOST_ITERATIONS),
             Method::Cholesky => self.by_factor(samples, penalty),
             Method::Qr => qr::fit_weighted(samples, self.weights.as_deref(), self.degree, penalty),
         }
@@ -183,27 +184,6 @@ impl Gram {
         Ok((largest * inverse).sqrt())
     }
 
-    fn by_iteration(
-        &self,
-        samples: Samples,
-        penalty: Penalty,
-    ) -> Result<Coefficients, RegressionError> {
-        self.refine(samples, penalty, &|right, share| {
-            let limits = Limits::to(share, self.most_iterations());
-            self.iterate(penalty, right, None, limits)
-                .map(|outcome| outcome.solution)
-        })
-    }
-
-    fn by_factor(
-        &self,
-        samples: Samples,
-        penalty: Penalty,
-    ) -> Result<Coefficients, RegressionError> {
-        let factor = self.factor(penalty)?;
-        self.refine(samples, penalty, &|right, _| Ok(factor.solve(right)))
-    }
-
     /// Whether the factor is at hand or cheap.
     fn prefers_dense(&self) -> bool {
         self.degree <= SMALL_DEGREE || self.dense.get().is_some()
@@ -214,7 +194,7 @@ impl Gram {
         if self.degree <= DENSE_DEGREE {
             200 + index::count(self.degree) / 5
         } else {
-            5000
+            MOST_ITERATIONS
         }
     }
 
@@ -225,6 +205,27 @@ impl Gram {
     pub fn covariance(&self, penalty: Penalty) -> Result<Mat<f64>, RegressionError> {
         penalty.check()?;
         Ok(self.factor(penalty)?.inverse())
+    }
+
+    /// wᵢ yᵢᵀ (YᵀWY + penalty)⁻¹ yᵢ for every sample: the diagonal of the hat matrix, how much each
+    /// sample determines its own fitted value, between 0 and 1; the sum is the degrees of freedom.
+    ///
+    /// From the dense factor, as [`Gram::covariance`]; then all points are read from one function of
+    /// degree 2L. `samples` are those the system was assembled from.
+    pub fn leverage(
+        &self,
+        samples: Samples,
+        penalty: Penalty,
+    ) -> Result<Vec<f64>, RegressionError> {
+        penalty.check()?;
+        let factor = self.factor(penalty)?;
+        let inverse = factor.ordered_inverse();
+        let form = quadratic_form(inverse.as_ref(), self.degree, factor.order);
+        let mut out = self.points.evaluate(samples.directions, form.as_slice());
+        for (h, w) in out.iter_mut().zip(self.weights.iter().flatten()) {
+            *h *= w;
+        }
+        Ok(out)
     }
 
     /// The λ that maximises the restricted marginal likelihood of the samples (REML).
@@ -276,13 +277,14 @@ impl Gram {
                     solution,
                     iterations: 0,
                     converged: true,
+                    fine: false,
                 }
             })
             .collect())
     }
 
     /// Conjugate gradients on YᵀWY + penalty.
-    fn iterate(
+    pub(super) fn iterate(
         &self,
         penalty: Penalty,
         right: &[f64],
@@ -326,41 +328,7 @@ impl Gram {
         image
     }
 
-    /// Solves, then corrects by what the samples themselves say about the error.
-    fn refine(
-        &self,
-        samples: Samples,
-        penalty: Penalty,
-        solve: &Solver,
-    ) -> Result<Coefficients, RegressionError> {
-        let mut beta = solve(&self.right, 1e-18)?;
-        let fitted = self.points.evaluate(samples.directions, &beta);
-        let mut residual: Vec<f64> = samples
-            .values
-            .iter()
-            .zip(&fitted)
-            .map(|(f, h)| f - self.mean - h)
-            .collect();
-        if let Some(weights) = &self.weights {
-            for (r, w) in residual.iter_mut().zip(weights) {
-                *r *= w;
-            }
-        }
-        let gradient = self
-            .points
-            .moments(samples.directions, &residual, self.degree);
-        let mut gradient = gradient.as_slice().to_vec();
-        for (i, g) in gradient.iter_mut().enumerate() {
-            *g -= penalty.weight(index::degree_order(i).0) * beta[i];
-        }
-        for (b, step) in beta.iter_mut().zip(solve(&gradient, 1e-10)?) {
-            *b += step;
-        }
-        beta[0] += self.mean * (4.0 * std::f64::consts::PI).sqrt();
-        Coefficients::new(beta).map_err(|_| self.rank_deficient())
-    }
-
-    fn factor(&self, penalty: Penalty) -> Result<Factor<'_>, RegressionError> {
+    pub(super) fn factor(&self, penalty: Penalty) -> Result<Factor<'_>, RegressionError> {
         let dense = self
             .dense
             .get_or_init(|| Dense::new(&self.density, self.degree));
@@ -373,7 +341,7 @@ impl Gram {
         }
     }
 
-    fn rank_deficient(&self) -> RegressionError {
+    pub(super) fn rank_deficient(&self) -> RegressionError {
         RegressionError::RankDeficient {
             samples: self.samples,
             coefficients: index::count(self.degree),
@@ -390,39 +358,6 @@ pub fn fit(
 ) -> Result<Coefficients, RegressionError> {
     let solution = Gram::new(samples, degree)?.solve(samples, penalty)?;
     Ok(solution.coefficients)
-}
-
-/// Sums over the points: by a non-uniform Fourier transform where it pays.
-enum Points {
-    Few,
-    Many(Scattered),
-}
-
-impl Points {
-    fn new(directions: &[Direction], degree: usize) -> Self {
-        // A point costs the window's squares, or every harmonic; the grid costs L³ once.
-        if directions.len() > 400 && degree > 8 {
-            Self::Many(Scattered::new(directions))
-        } else {
-            Self::Few
-        }
-    }
-
-    fn moments(&self, directions: &[Direction], weights: &[f64], degree: usize) -> Coefficients {
-        match self {
-            Self::Few => batch::moments(directions, weights, degree),
-            Self::Many(points) => points.moments(weights, degree),
-        }
-    }
-
-    fn evaluate(&self, directions: &[Direction], beta: &[f64]) -> Vec<f64> {
-        let mut coefficients = Coefficients::zeros(beta.len().isqrt() - 1);
-        coefficients.as_mut_slice().copy_from_slice(beta);
-        match self {
-            Self::Few => batch::evaluate(&coefficients, directions),
-            Self::Many(points) => points.evaluate(&coefficients),
-        }
-    }
 }
 
 fn check_weights(weights: &[f64], samples: usize) -> Result<(), RegressionError> {

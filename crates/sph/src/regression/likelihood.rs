@@ -42,6 +42,7 @@ fn balance(
         share: 1e-3,
         offset: gram.sum_squares(),
         floor: 1e-16 * gram.sum_squares(),
+        fine: None,
     };
     // The quadratic of a probe tends to −(trace)/λ; trace + quadratic·λ is the degrees of freedom.
     let trace = Limits {
@@ -49,6 +50,7 @@ fn balance(
         share: 3e-3,
         offset: (unknowns - 1.0) / penalty.lambda,
         floor: 0.1 / penalty.lambda,
+        fine: None,
     };
     let start = beta.take();
     let mut rights = vec![(gram.right(), start.as_deref(), fit)];

@@ -4,6 +4,7 @@ use pulp::{Simd, WithSimd};
 
 use super::{Modes, Torus};
 use crate::fft::{Complex, LANES, Sign};
+use crate::kernel::REACH;
 use crate::legendre::Legendre;
 use crate::rings::{Lane, OrderValues, Pairs, add_order, multiply, order_sums};
 
@@ -169,7 +170,7 @@ impl WithSimd for RowsFromModes<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
         let torus = self.torus;
-        let (n, stride, reach) = (torus.steps(), torus.stride(), torus.kernel.reach());
+        let (n, stride) = (torus.steps(), torus.stride());
         let rows = self.values.len() / stride;
         let mut data = vec![Complex::ZERO; n];
         let mut scratch = vec![Complex::ZERO; n];
@@ -196,7 +197,7 @@ impl WithSimd for RowsFromModes<'_> {
         torus.phi.run(Sign::Plus, &mut data, &mut scratch);
         for (r, row) in self.values.chunks_mut(stride).enumerate() {
             for (k, value) in row.iter_mut().enumerate() {
-                let element = &data[(k + n - reach) % n];
+                let element = &data[(k + n - REACH) % n];
                 *value = if r < LANES {
                     element.re[r]
                 } else {
@@ -221,13 +222,13 @@ impl WithSimd for ModesFromRows<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
         let torus = self.torus;
-        let (n, stride, reach) = (torus.steps(), torus.stride(), torus.kernel.reach());
+        let (n, stride) = (torus.steps(), torus.stride());
         let mode_stride = torus.mode_stride();
         let mut data = vec![Complex::ZERO; n];
         let mut scratch = vec![Complex::ZERO; n];
         for (r, row) in self.values.chunks(stride).enumerate() {
             for (k, value) in row.iter().enumerate() {
-                let element = &mut data[(k + n - reach) % n];
+                let element = &mut data[(k + n - REACH) % n];
                 if r < LANES {
                     element.re[r] += value;
                 } else {

@@ -1,0 +1,100 @@
+//! Options of the commands on grasps without a hand.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::ConventionOptions;
+
+#[derive(Debug, Args)]
+pub(crate) struct QualityOptions {
+    /// Grasps: grasps.json, or .npy / .csv with 21 columns c1 c2 c3 n1 n2 n3 z.
+    pub(crate) grasps: PathBuf,
+    /// Result, N×3 in .npy: quality, lower, upper.
+    #[arg(short, long)]
+    pub(crate) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) convention: ConventionOptions,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum AscentScheme {
+    /// Monotone, from analytic gradients of all deciding facets.
+    Ours,
+    /// 1,000 fixed steps along forward differences.
+    Paper,
+}
+
+/// Under which convention grasps are moved, and where the result goes.
+#[derive(Debug, Args)]
+pub(crate) struct MoveOptions {
+    /// The grasps where they ended, as grasps.json in the frame of the cloud of their shape.
+    #[arg(short, long)]
+    pub(crate) output: Option<PathBuf>,
+    /// Every step of every grasp, as JSON.
+    #[arg(long)]
+    pub(crate) trace: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) convention: ConventionOptions,
+}
+
+/// What every grasp must keep.
+#[derive(Debug, Args)]
+pub(crate) struct LimitOptions {
+    /// Least distance between any two contacts, millimetres.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub(crate) separation: Option<f64>,
+    /// Largest distance between any two contacts, millimetres.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub(crate) reach: Option<f64>,
+    /// Part of the surface that contacts may touch: X,Y,Z,DEGREES, the cone around a direction from
+    /// the centre. Several: in all of them.
+    #[arg(long, value_name = "X,Y,Z,DEGREES", allow_hyphen_values = true)]
+    pub(crate) allow: Vec<String>,
+    /// Grasps must be closed under this smaller friction too.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) closed_at_friction: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct AscendOptions {
+    /// A shape that `fit` wrote.
+    pub(crate) shape: PathBuf,
+    /// grasps.json in the frame of the shape's cloud; contacts are projected to the surface.
+    pub(crate) grasps: PathBuf,
+    #[arg(long, value_enum, default_value_t = AscentScheme::Ours)]
+    pub(crate) scheme: AscentScheme,
+    #[command(flatten)]
+    pub(crate) limits: LimitOptions,
+    #[command(flatten)]
+    pub(crate) moved: MoveOptions,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TransferScheme {
+    /// Adaptive stations, monotone ascents, recovery from poor ends.
+    Ours,
+    /// Eleven stations with 100 fixed steps each.
+    Paper,
+    /// The contacts keep their directions.
+    Naive,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TransferOptions {
+    /// The shape that the grasps are on.
+    #[arg(long)]
+    pub(crate) from: PathBuf,
+    /// The shape that they are carried to.
+    #[arg(long)]
+    pub(crate) to: PathBuf,
+    /// grasps.json in the frame of the first shape's cloud.
+    pub(crate) grasps: PathBuf,
+    #[arg(long, value_enum, default_value_t = TransferScheme::Ours)]
+    pub(crate) scheme: TransferScheme,
+    /// Look for better ends even where the first is good; some seven times slower.
+    #[arg(long)]
+    pub(crate) thorough: bool,
+    #[command(flatten)]
+    pub(crate) moved: MoveOptions,
+}

@@ -1,0 +1,151 @@
+//! `moduli hand check`: what is wrong with a hand's files, and how the hand looks.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use hand::Hand;
+use serde::Serialize;
+
+use crate::args::{Common, HandCheckOptions, HandOptions};
+use crate::failure::Failure;
+use crate::hands::findings::{self, Checked, Finding};
+use crate::hands::trial::{self, Trial};
+use crate::hands::{page, spec_path};
+use crate::plan::synthesis::{reasons, sentence, why_none};
+use crate::{input, output};
+
+#[derive(Serialize)]
+struct CheckLine<'a> {
+    urdf: String,
+    spec: String,
+    findings: &'a [Finding],
+    errors: usize,
+    warnings: usize,
+    hand: Option<HandLine<'a>>,
+}
+
+#[derive(Serialize)]
+struct HandLine<'a> {
+    name: &'a str,
+    palm_link: &'a str,
+    links: usize,
+    driven_joints: Vec<&'a str>,
+    fingers: Vec<&'a str>,
+    preshapes: Vec<&'a str>,
+    ball_diameter_m: f64,
+    ball_poses: usize,
+    ball_stable: usize,
+    ball_rejected: BTreeMap<&'static str, usize>,
+    page: String,
+}
+
+pub(crate) fn run(options: &HandCheckOptions, common: &Common) -> Result<(), Failure> {
+    let files = HandOptions {
+        hand: options.urdf.clone(),
+        spec: options.spec.clone(),
+        package_root: options.package_root.clone(),
+    };
+    let mut checked = findings::check(&files)?;
+    let hand = checked.hand.take();
+    let tried = hand
+        .as_ref()
+        .map(|hand| trial::on_ball(hand, options.ball, common.seed))
+        .transpose()?;
+    if let (Some(hand), Some(tried)) = (&hand, &tried) {
+        checked.findings.extend(no_grasp(hand, tried, &files));
+    }
+    let page = options.output.clone().unwrap_or_else(|| {
+        PathBuf::from("out")
+            .join(input::stem(&options.urdf))
+            .join("hand.html")
+    });
+    let shown = hand.as_ref().zip(tried.as_ref());
+    if let Some((hand, tried)) = shown {
+        let html = page::render(hand, &checked, tried)?;
+        output::write_file(&page, html.as_bytes())?;
+    }
+    let page = page.display().to_string();
+    let line = CheckLine {
+        urdf: files.hand.display().to_string(),
+        spec: spec_path(&files).display().to_string(),
+        findings: &checked.findings,
+        errors: checked.count("error"),
+        warnings: checked.count("warning"),
+        hand: shown.map(|(hand, tried)| hand_line(hand, tried, page)),
+    };
+    if common.json {
+        output::say_json(&line)?;
+    } else {
+        say(&line, tried.as_ref());
+    }
+    verdict(&checked, &files)
+}
+
+/// A hand that cannot grasp a ball is worth a word.
+fn no_grasp(hand: &Hand, tried: &Trial, files: &HandOptions) -> Option<Finding> {
+    (tried.outcomes.stable == 0).then(|| Finding {
+        severity: "warning",
+        place: spec_path(files).display().to_string(),
+        text: format!(
+            "no pose gives a stable grasp of a ball of {:.0} mm: {}; try another --ball",
+            1e3 * tried.diameter,
+            why_none(&tried.outcomes, hand)
+        ),
+    })
+}
+
+fn hand_line<'a>(hand: &'a Hand, tried: &Trial, page: String) -> HandLine<'a> {
+    HandLine {
+        name: hand.name(),
+        palm_link: &hand.model().links()[0].name,
+        links: hand.model().links().len(),
+        driven_joints: hand.model().driven_names(),
+        fingers: hand.fingers().iter().map(|f| f.name.as_str()).collect(),
+        preshapes: hand.preshapes().iter().map(|p| p.name.as_str()).collect(),
+        ball_diameter_m: tried.diameter,
+        ball_poses: tried.outcomes.total(),
+        ball_stable: tried.outcomes.stable,
+        ball_rejected: reasons(&tried.outcomes).into_iter().collect(),
+        page,
+    }
+}
+
+fn say(line: &CheckLine, tried: Option<&Trial>) {
+    for finding in line.findings {
+        output::say(format!(
+            "{:8} {}: {}",
+            finding.severity, finding.place, finding.text
+        ));
+    }
+    if let (Some(hand), Some(tried)) = (&line.hand, tried) {
+        output::say(format!(
+            "hand {}: palm {}, {} links, {} driven joints, fingers {}, pre-shapes {}",
+            hand.name,
+            hand.palm_link,
+            hand.links,
+            hand.driven_joints.len(),
+            hand.fingers.join(", "),
+            hand.preshapes.join(", ")
+        ));
+        output::say(format!(
+            "on a ball of {:.0} mm: {}",
+            1e3 * tried.diameter,
+            sentence(&tried.outcomes)
+        ));
+        output::say(&hand.page);
+    }
+    output::say(format!(
+        "{} errors, {} warnings",
+        line.errors, line.warnings
+    ));
+}
+
+fn verdict(checked: &Checked, files: &HandOptions) -> Result<(), Failure> {
+    match checked.count("error") {
+        0 => Ok(()),
+        errors => Err(Failure::input(
+            &files.hand,
+            format!("this hand cannot be used: {errors} errors, listed above"),
+        )),
+    }
+}

@@ -1,0 +1,82 @@
+//! The files of ranked grasps, and the table.
+
+use std::path::{Path, PathBuf};
+
+use hand::Hand;
+use record::{GraspsFile, isaac_grasps};
+use shape::PointCloud;
+
+use super::{Candidate, Target, page, ranking};
+use crate::failure::Failure;
+use crate::output;
+
+/// Rows of the table on standard output.
+const SHOWN: usize = 10;
+
+/// What was written.
+pub(crate) struct Written {
+    pub(crate) file: GraspsFile,
+    pub(crate) grasps_json: PathBuf,
+    pub(crate) grasps_yaml: PathBuf,
+    pub(crate) index_html: PathBuf,
+}
+
+/// Writes grasps.json, grasps.yaml and index.html into a folder; `facts` are further lines of the
+/// page's head.
+pub(crate) fn write(
+    folder: &Path,
+    target: &Target,
+    cloud: Option<&PointCloud>,
+    hand: &Hand,
+    ranked: &[Candidate],
+    facts: Vec<String>,
+) -> Result<Written, Failure> {
+    let file = ranking::grasps_file(target, hand, ranked);
+    let written = Written {
+        grasps_json: folder.join("grasps.json"),
+        grasps_yaml: folder.join("grasps.yaml"),
+        index_html: folder.join("index.html"),
+        file,
+    };
+    let file = &written.file;
+    let html = page::render(target, cloud, hand, ranked, file, facts)?;
+    output::write_file(&written.grasps_json, &output::encode(file)?)?;
+    output::write_file(&written.grasps_yaml, isaac_grasps(file).as_bytes())?;
+    output::write_file(&written.index_html, html.as_bytes())?;
+    Ok(written)
+}
+
+impl Written {
+    /// The best grasps, a line each.
+    pub(crate) fn print_table(&self) {
+        if self.file.grasps.is_empty() {
+            return;
+        }
+        output::say(format!(
+            "\n{:>4}  {:>7}  {:36}  {}",
+            "rank", "quality", "source", "contacts (mm, frame of the cloud)"
+        ));
+        for grasp in self.file.grasps.iter().take(SHOWN) {
+            let contacts: Vec<String> = grasp
+                .contacts_m
+                .iter()
+                .map(|c| format!("({:.1} {:.1} {:.1})", 1e3 * c[0], 1e3 * c[1], 1e3 * c[2]))
+                .collect();
+            output::say(format!(
+                "{:>4}  {:>7.4}  {:36}  {}",
+                grasp.rank,
+                grasp.quality,
+                page::source_label(&grasp.source),
+                contacts.join(" ")
+            ));
+        }
+        output::say("");
+    }
+
+    /// Where everything is.
+    pub(crate) fn print_paths(&self) {
+        for path in [&self.grasps_json, &self.grasps_yaml, &self.index_html] {
+            output::say(path.display().to_string());
+        }
+    }
+}

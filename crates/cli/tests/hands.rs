@@ -1,0 +1,365 @@
+//! `synthesize`, `hand check` and hands of one's own, as a user runs them.
+
+mod common;
+
+use std::path::Path;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use common::{moduli, refused, stdout};
+
+/// Fits an ellipsoid of these half axes about (1, 0, 0.2).
+fn fitted(folder: &Path, name: &str, axes: [f64; 3]) {
+    let text: String = sph::direction::even_directions(1200)
+        .iter()
+        .map(|p| {
+            let at = |k: usize| [1.0, 0.0, 0.2][k] + axes[k] * p[k];
+            format!("{} {} {}\n", at(0), at(1), at(2))
+        })
+        .collect();
+    std::fs::write(folder.join(format!("{name}.xyz")), text).unwrap();
+    let (cloud, shape) = (format!("{name}.xyz"), format!("{name}.shape"));
+    stdout(&moduli(
+        folder,
+        &["fit", &cloud, "--degree", "8", "-o", &shape, "-q"],
+    ));
+}
+
+/// A gripper of two fingers that slide towards each other, with tips from a mesh in a package.
+fn gripper(folder: &Path) {
+    let finger = |side: &str, y: f64| {
+        format!(
+            r#"<link name="{side}"><collision><origin xyz="0 0 0.06"/><geometry>
+<mesh filename="package://gripper/meshes/tip.obj" scale="0.01 0.01 0.05"/></geometry></collision></link>
+<joint name="{side}_slide" type="prismatic"><parent link="base"/><child link="{side}"/>
+<origin xyz="0 {y} 0"/><axis xyz="0 {} 0"/><limit lower="0" upper="0.09" effort="1" velocity="1"/></joint>"#,
+            -y.signum()
+        )
+    };
+    let urdf = format!(
+        r#"<robot name="gripper"><link name="base"><collision><geometry>
+<box size="0.04 0.3 0.02"/></geometry></collision></link>{}{}</robot>"#,
+        finger("left", 0.1),
+        finger("right", -0.1)
+    );
+    let spec = r#"
+name = "gripper"
+palm = "base"
+approach_axis = [0.0, 0.0, 1.0]
+standoff_m = [0.05, 0.06]
+[[finger]]
+name = "left"
+tips = ["left"]
+closing = { left_slide = 1.0 }
+[[finger]]
+name = "right"
+tips = ["right"]
+closing = { right_slide = 1.0 }
+[[preshape]]
+name = "open"
+joints = {}
+[[preshape]]
+name = "half"
+joints = { left_slide = 0.03, right_slide = 0.03 }
+"#;
+    let tip: String = (0..8)
+        .map(|k| {
+            let side = |bit: usize| if k >> bit & 1 == 0 { -1 } else { 1 };
+            format!("v {} {} {}\n", side(0), side(1), side(2))
+        })
+        .collect();
+    std::fs::create_dir_all(folder.join("gripper/urdf")).unwrap();
+    std::fs::create_dir_all(folder.join("gripper/meshes")).unwrap();
+    std::fs::write(folder.join("gripper/urdf/gripper.urdf"), urdf).unwrap();
+    std::fs::write(folder.join("gripper/urdf/gripper.toml"), spec).unwrap();
+    std::fs::write(folder.join("gripper/meshes/tip.obj"), tip).unwrap();
+}
+
+const URDF: &str = "gripper/urdf/gripper.urdf";
+
+fn read(folder: &Path, name: &str) -> Value {
+    serde_json::from_slice(&std::fs::read(folder.join(name)).unwrap()).unwrap()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    let list = value.as_array().unwrap().iter();
+    list.map(|v| v.as_f64().unwrap()).collect()
+}
+
+#[test]
+fn synthesis_writes_json_yaml_and_a_page() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    fitted(here, "egg", [0.035, 0.030, 0.045]);
+    let arguments = [
+        "synthesize",
+        "egg.shape",
+        "--poses",
+        "60",
+        "--keep",
+        "5",
+        "--preshape",
+        "spread",
+        "--json",
+        "-o",
+        "one",
+    ];
+    let said: Value = serde_json::from_str(&stdout(&moduli(here, &arguments))).unwrap();
+    let count = |v: &Value| v.as_u64().unwrap();
+    let rejected: u64 = said["rejected"]
+        .as_object()
+        .unwrap()
+        .values()
+        .map(count)
+        .sum();
+    assert_eq!(
+        count(&said["stable"]) + rejected,
+        60,
+        "every pose is counted"
+    );
+    assert_eq!((count(&said["poses"]), count(&said["kept"])), (60, 5));
+    assert_eq!(said["preshapes"], serde_json::json!(["spread"]));
+
+    let file = read(here, "one/grasps.json");
+    assert_eq!(file["convention"]["tangent"], "least_aligned");
+    let best = &file["grasps"][0];
+    assert_eq!(best["quality"], said["best"]);
+    assert_eq!(best["hand"]["palm_link"], "sdh_palm_link");
+    let before = &best["hand"]["pregrasp_joints_rad"];
+    assert!((before["sdh_knuckle_joint"].as_f64().unwrap() - 1.047_197_551).abs() <= 1e-8);
+    for grasp in file["grasps"].as_array().unwrap() {
+        for contact in grasp["contacts_m"].as_array().unwrap() {
+            let x = numbers(contact);
+            let level = ((x[0] - 1.0) / 0.035).powi(2)
+                + (x[1] / 0.030).powi(2)
+                + ((x[2] - 0.2) / 0.045).powi(2);
+            assert!((level - 1.0).abs() <= 0.05, "{x:?}");
+        }
+    }
+
+    let yaml = std::fs::read_to_string(here.join("one/grasps.yaml")).unwrap();
+    assert!(yaml.starts_with("format: isaac_grasp\nformat_version: 1.0\n"));
+    assert_eq!(yaml.matches("    confidence: ").count(), 5);
+    let pose = &best["hand"]["object_from_palm"];
+    let position: Vec<String> = numbers(&pose["translation_m"])
+        .iter()
+        .map(f64::to_string)
+        .collect();
+    assert!(yaml.contains(&format!("position: [{}]", position.join(", "))));
+    assert!(yaml.contains("gripper_frame_link: \"sdh_palm_link\""));
+    let page = std::fs::read_to_string(here.join("one/index.html")).unwrap();
+    assert!(page.contains("Plotly") && page.contains("hand poses give a stable grasp"));
+
+    // The same seed gives the same bytes, whatever the number of threads; another seed does not.
+    let mut again = arguments.to_vec();
+    again[10] = "two";
+    stdout(&moduli(here, &[&again[..], &["--threads", "1"]].concat()));
+    for name in ["grasps.json", "grasps.yaml", "index.html"] {
+        let bytes = |run: &str| std::fs::read(here.join(run).join(name)).unwrap();
+        assert!(bytes("one") == bytes("two"), "{name}");
+    }
+    again[10] = "three";
+    stdout(&moduli(here, &[&again[..], &["--seed", "1"]].concat()));
+    assert_ne!(read(here, "three/grasps.json"), file);
+    // What comes out goes into the other commands.
+    stdout(&moduli(here, &["quality", "one/grasps.json"]));
+    stdout(&moduli(here, &["ascend", "egg.shape", "one/grasps.json"]));
+}
+
+#[test]
+fn no_grasps_say_why() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    fitted(here, "crumb", [0.006, 0.006, 0.006]);
+    let arguments = ["synthesize", "crumb.shape", "--poses", "20", "-o", "none"];
+    let output = moduli(here, &arguments);
+    refused(&output, 4, &["0 grasps of the hand sdh", "of 20 poses"]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(said.contains("0 of 20 hand poses"), "{said}");
+    let file = read(here, "none/grasps.json");
+    assert_eq!(file["grasps"], serde_json::json!([]));
+    let yaml = std::fs::read_to_string(here.join("none/grasps.yaml")).unwrap();
+    assert!(yaml.ends_with("grasps: {}\n"));
+}
+
+#[test]
+fn a_hand_of_ones_own_is_checked_and_used() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    gripper(here);
+    let root = ["--package-root", "."];
+    let check = ["hand", "check", URDF, "--json", "-o", "page.html"];
+    let line = stdout(&moduli(here, &[&check[..], &root].concat()));
+    let said: Value = serde_json::from_str(&line).unwrap();
+    assert_eq!(said["errors"], 0, "{line}");
+    assert_eq!(said["hand"]["name"], "gripper");
+    assert_eq!(
+        said["hand"]["fingers"],
+        serde_json::json!(["left", "right"])
+    );
+    let page = std::fs::read_to_string(here.join("page.html")).unwrap();
+    assert!(page.contains("half: opened") && page.contains("left_slide"));
+
+    // Two fingers never close a grasp with point contacts, and the program says so.
+    fitted(here, "egg", [0.035, 0.030, 0.045]);
+    let with = [
+        "synthesize",
+        "egg.shape",
+        "--hand",
+        URDF,
+        "--package-root",
+        ".",
+        "--poses",
+        "30",
+        "-o",
+        "two",
+    ];
+    refused(&moduli(here, &with), 4, &["gripper", "unstable"]);
+    let whole = [
+        "grasp",
+        "egg.xyz",
+        "--degree",
+        "8",
+        "--hand",
+        URDF,
+        "--package-root",
+        ".",
+        "--poses",
+        "10",
+        "--neighbours",
+        "1",
+        "--transfers",
+        "2",
+        "-o",
+        "whole",
+    ];
+    let said = stdout(&moduli(here, &whole));
+    assert!(said.contains("come without a hand"), "{said}");
+    let file = read(here, "whole/grasps.json");
+    assert!(!file["grasps"].as_array().unwrap().is_empty());
+    assert!(file["grasps"][0]["hand"].is_null());
+}
+
+#[test]
+fn everything_wrong_with_a_hand_is_told_at_once() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    gripper(here);
+    let toml = here.join("gripper/urdf/gripper.toml");
+    let good = std::fs::read_to_string(&toml).unwrap();
+    let bad = good
+        .replace("tips = [\"right\"]", "tips = [\"claw\", \"hook\"]")
+        .replace("palm = \"base\"", "palm = \"hand\"")
+        .replace("left_slide = 0.03", "left_slide = 3.0")
+        .replace("right_slide = 0.03", "knuckle = 0.0");
+    std::fs::write(&toml, bad).unwrap();
+    std::fs::remove_file(here.join("gripper/meshes/tip.obj")).unwrap();
+    let output = moduli(here, &["hand", "check", URDF, "--package-root", "."]);
+    refused(&output, 3, &["gripper.urdf", "6 errors"]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    for word in [
+        "'claw'",
+        "'hook'",
+        "'hand'",
+        "'base'",
+        "'knuckle'",
+        "left_slide",
+        "0.09",
+        "tip.obj",
+    ] {
+        assert!(said.contains(word), "{word} is not in: {said}");
+    }
+    assert!(
+        !here.join("out").exists(),
+        "no page of a hand that cannot be used"
+    );
+    let line = moduli(here, &["hand", "check", URDF, "--json"]);
+    let said: Value = serde_json::from_slice(&line.stdout).unwrap();
+    assert!(said["hand"].is_null());
+    assert!(said["findings"][0]["place"].is_string());
+}
+
+#[test]
+fn hostile_hands_are_refused_by_name() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    gripper(here);
+    fitted(here, "egg", [0.035, 0.030, 0.045]);
+    let hand = |urdf: &str, spec: &str| {
+        let arguments = [
+            "synthesize",
+            "egg.shape",
+            "--hand",
+            urdf,
+            "--spec",
+            spec,
+            "--poses",
+            "5",
+            "-o",
+            "x",
+        ];
+        moduli(here, &arguments)
+    };
+    let toml = "gripper/urdf/gripper.toml";
+    refused(&hand("missing.urdf", toml), 3, &["missing.urdf"]);
+    refused(&hand("gripper", toml), 3, &["gripper", "directory"]);
+    refused(&hand("egg.shape", toml), 3, &["egg.shape", "not a text"]);
+    refused(&hand(toml, toml), 3, &["gripper.toml"]);
+    // Outside the package root nothing is read.
+    let apart = hand(URDF, toml);
+    refused(&apart, 3, &["tip.obj", "no such file"]);
+    let with_root = |spec: &str| {
+        let arguments = [
+            "synthesize",
+            "egg.shape",
+            "--hand",
+            URDF,
+            "--package-root",
+            ".",
+            "--spec",
+            spec,
+            "--poses",
+            "5",
+            "-o",
+            "x",
+        ];
+        moduli(here, &arguments)
+    };
+    std::fs::write(here.join("empty.toml"), "").unwrap();
+    refused(&with_root("empty.toml"), 3, &["empty.toml", "name"]);
+    refused(&with_root("gripper"), 3, &["gripper", "directory"]);
+    let spec = std::fs::read_to_string(here.join(toml)).unwrap();
+    let unknown = spec.replace("tips = [\"left\"]", "tips = [\"thumb\"]");
+    std::fs::write(here.join("unknown.toml"), unknown).unwrap();
+    refused(
+        &with_root("unknown.toml"),
+        3,
+        &["unknown.toml", "'thumb'", "does not exist", "hand check"],
+    );
+    let wrong_shape = ["synthesize", "egg.xyz", "-o", "x"];
+    refused(&moduli(here, &wrong_shape), 3, &["egg.xyz", "moduli fit"]);
+    for (flag, value, word) in [
+        ("--preshape", "fist", "parallel, spread"),
+        ("--least-quality", "NaN", "least-quality"),
+        ("--poses", "0", "poses"),
+        ("--spec", "empty.toml", "own TOML"),
+    ] {
+        let arguments = ["synthesize", "egg.shape", flag, value, "-o", "x"];
+        refused(&moduli(here, &arguments), 2, &[word]);
+    }
+    assert!(!here.join("x").exists(), "no result of a failure");
+    refused(
+        &moduli(
+            here,
+            &["hand", "check", "sdh", "--ball", "-3", "-o", "p.html"],
+        ),
+        2,
+        &["--ball -3"],
+    );
+    refused(
+        &moduli(here, &["hand", "check", "none.urdf"]),
+        3,
+        &["none.urdf", "2 errors"],
+    );
+}

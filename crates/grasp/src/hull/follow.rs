@@ -1,0 +1,173 @@
+//! A search that goes on from the polytope of the last one, for points that have moved a little.
+//!
+//! The facets keep their vertices while these move. No simplex may cross the origin on the way: then
+//! the surface still winds around it once, and the least distance of any simplex from the origin is
+//! still the radius of a ball inside the hull, whether the surface stayed convex or not. That
+//! distance is bounded from below without a new plane, first by the old bound less the way that
+//! points went, then by the heights of the vertices over the old plane; only facets that may be the
+//! nearest get planes again. The end is as in a new search: the nearest facet has no point above it.
+//! Whatever looks odd is left to a new search.
+
+use super::plane::{V6, dot, norm, sub};
+use super::polytope::{MAX_VERTICES, Polytope};
+use super::search::{Ball, RELATIVE_TOLERANCE, Search};
+use super::support::{PointSet, Support};
+
+/// More facets than this are not worth carrying on.
+const MOST_FACETS: usize = 1_500;
+/// Bounds of more vertices' moves than this say nothing any more, in units of the longest point.
+const MOST_DRIFT: f64 = 4.0;
+
+impl Search {
+    /// [`Search::ball`] of exact points, where the polytope of the last search came from the same
+    /// points before they moved; None when only a new search can tell.
+    pub(crate) fn ball_again(&mut self, points: &PointSet) -> Option<Ball> {
+        let reach = points.reach();
+        let tolerance = RELATIVE_TOLERANCE * reach;
+        let polytope = &mut self.polytope;
+        polytope.follow(points);
+        if polytope.drift > MOST_DRIFT * reach || polytope.keys.len() > MOST_FACETS {
+            return None;
+        }
+        let mut upper = f64::INFINITY;
+        let mut direction = [0.0; 6];
+        loop {
+            let facet = self.polytope.nearest_fresh(tolerance)?;
+            let plane = self.polytope.facets[facet].plane;
+            if plane.offset <= tolerance {
+                return None;
+            }
+            let (point, tag) = (&mut &*points).support(&plane.normal);
+            let height = dot(&plane.normal, &point);
+            if height < upper {
+                (upper, direction) = (height, plane.normal);
+            }
+            self.polytope.hint = facet;
+            if height - plane.offset <= tolerance {
+                let lower = plane.offset - self.polytope.worst_residual;
+                // An interval that rounding has widened may be narrower after a new search.
+                return (upper - lower <= tolerance).then_some(Ball::Closed {
+                    lower: lower.min(upper),
+                    upper,
+                    direction,
+                    facet,
+                });
+            }
+            if !self.expand_moved(facet, &point, tag, tolerance) {
+                return None;
+            }
+        }
+    }
+
+    /// Adds a point above a facet; false where that could turn the surface over.
+    ///
+    /// What a vertex takes away and what it adds bound the simplices between the vertex and each
+    /// visible facet. The origin is below these facets, so it is in none of those simplices.
+    pub(super) fn expand_moved(
+        &mut self,
+        facet: usize,
+        point: &V6,
+        tag: u32,
+        tolerance: f64,
+    ) -> bool {
+        let polytope = &mut self.polytope;
+        if polytope.vertices.len() >= MAX_VERTICES || polytope.has_vertex(point) {
+            return false;
+        }
+        if !polytope.insert(point, tag, facet, tolerance) {
+            return false;
+        }
+        let offsets = polytope.visible.iter();
+        let mut offsets = offsets.map(|&f| polytope.facets[f as usize].plane.offset);
+        offsets.all(|offset| offset > 0.0)
+    }
+}
+
+impl Polytope {
+    /// Moves every vertex to where its point is now.
+    fn follow(&mut self, points: &PointSet) {
+        let mut farthest = 0.0_f64;
+        for (vertex, &tag) in self.vertices.iter_mut().zip(&self.tags) {
+            let point = points.get(tag as usize);
+            farthest = farthest.max(norm(&sub(&point, vertex)));
+            *vertex = point;
+        }
+        if farthest == 0.0 {
+            return;
+        }
+        self.drift += farthest;
+        self.moves += 1;
+        for at in 0..self.vertices.len() {
+            let point = self.vertices[at];
+            self.widen(&point);
+        }
+    }
+
+    /// Whether a facet's plane is that of its vertices where they are now.
+    #[inline]
+    pub(crate) fn is_fresh(&self, facet: usize) -> bool {
+        self.facets[facet].moved == self.moves
+    }
+
+    /// The nearest facet, with its plane; None when a simplex may have met the origin.
+    ///
+    /// One pass: whoever is above the nearest so far stays as it is.
+    fn nearest_fresh(&mut self, tolerance: f64) -> Option<usize> {
+        let (mut best, mut least) = (0, f64::INFINITY);
+        let hint = self.hint.min(self.keys.len() - 1);
+        for at in std::iter::once(hint).chain(0..self.keys.len()) {
+            if self.keys[at] >= least {
+                continue;
+            }
+            if !self.is_fresh(at) {
+                if self.sharpen(at) <= tolerance {
+                    return None;
+                }
+                if self.keys[at] >= least {
+                    continue;
+                }
+                self.freshen(at);
+            }
+            if self.keys[at] < least {
+                (best, least) = (at, self.keys[at]);
+            }
+        }
+        Some(best)
+    }
+
+    /// A bound of a facet that is out of date, from the heights of its vertices over the old plane.
+    fn sharpen(&mut self, at: usize) -> f64 {
+        let facet = &self.facets[at];
+        let normal = facet.plane.normal;
+        let heights = facet
+            .vertices
+            .map(|v| dot(&normal, &self.vertices[v as usize]));
+        let lowest = heights.into_iter().fold(f64::INFINITY, f64::min);
+        self.keys[at] = self.keys[at].max(lowest + self.drift);
+        lowest
+    }
+
+    /// Gives a facet the plane of its vertices, on the side where it was.
+    #[inline]
+    pub(crate) fn freshen(&mut self, at: usize) {
+        if !self.is_fresh(at) {
+            self.turn(at);
+        }
+    }
+
+    fn turn(&mut self, at: usize) {
+        let old = self.facets[at].plane.normal;
+        let plane = self.plane_through(&self.facets[at].vertices);
+        let plane = if dot(&plane.normal, &old) < 0.0 {
+            plane.flipped()
+        } else {
+            plane
+        };
+        self.worst_residual = self.worst_residual.max(plane.residual);
+        self.keys[at] = plane.offset + self.drift;
+        let facet = &mut self.facets[at];
+        facet.plane = plane;
+        facet.settled = false;
+        facet.moved = self.moves;
+    }
+}

@@ -1,0 +1,90 @@
+//! A step of an ascent does not touch the heap.
+#![allow(unsafe_code, reason = "counting allocations takes a global allocator")]
+
+use grasp::Convention;
+use moduli::{Cap, Constraints, MonotoneAscent, Objective};
+use nalgebra::{Point3, Vector3};
+use shape::{RadialField, RadialShape};
+use sph::{Coefficients, Direction, SphericalCoords, index};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+thread_local! {
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+// SAFETY: every call goes on to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.with(|c| c.set(c.get() + 1));
+        // SAFETY: the caller's contract is passed on.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller's contract is passed on.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        COUNT.with(|c| c.set(c.get() + 1));
+        // SAFETY: the caller's contract is passed on.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Allocations of a climb of so many steps, and the steps taken.
+fn climb(
+    steps: usize,
+    surface: &RadialField,
+    start: &[Direction],
+    objective: &mut Objective,
+    constraints: &Constraints,
+) -> (usize, usize) {
+    let settings = MonotoneAscent {
+        steps,
+        restarts: 0,
+        ..MonotoneAscent::default()
+    };
+    let mut taken = 0;
+    let before = COUNT.with(Cell::get);
+    settings
+        .climb_within(surface, start, objective, constraints, |_| taken += 1)
+        .unwrap();
+    (COUNT.with(Cell::get) - before, taken)
+}
+
+#[test]
+fn a_longer_climb_allocates_no_more_than_a_shorter_one() {
+    let mut beta = Coefficients::constant(20, 0.14);
+    beta.as_mut_slice()[index::position(2, 0)] = 0.02;
+    beta.as_mut_slice()[index::position(3, 1)] = 0.01;
+    beta.as_mut_slice()[index::position(5, -3)] = 0.004;
+    let surface = RadialField::new(RadialShape::new(beta).unwrap());
+    let start = [(1.2, 0.1), (1.7, 1.8), (1.4, 4.4)]
+        .map(|(theta, phi)| SphericalCoords { theta, phi }.direction());
+    let convention = Convention::named("paper").unwrap();
+    let mut objective = Objective::new(&convention, &surface, &Point3::origin());
+    let tight = Constraints {
+        least_separation: Some(0.02),
+        reach: Some(0.09),
+        caps: vec![Cap {
+            axis: Vector3::z_axis(),
+            least_cosine: -0.7,
+        }],
+        closed_under: None,
+    };
+    for constraints in [Constraints::default(), tight] {
+        // Scratch grows to what the longest climb needs.
+        let (_, long) = climb(60, &surface, &start, &mut objective, &constraints);
+        let (few, short) = climb(3, &surface, &start, &mut objective, &constraints);
+        let (many, _) = climb(60, &surface, &start, &mut objective, &constraints);
+        assert!(long > short + 4, "{long} and {short} steps were taken");
+        assert_eq!(few, many);
+    }
+}
