@@ -331,6 +331,13 @@ fn hostile_hands_are_refused_by_name() {
     };
     std::fs::write(here.join("empty.toml"), "").unwrap();
     refused(&with_root("empty.toml"), 3, &["empty.toml", "name"]);
+    let bare = ["synthesize", "egg.shape", "--hand", "bare.urdf"];
+    std::fs::write(
+        here.join("bare.urdf"),
+        "<robot name=\"r\"><link name=\"a\"/></robot>",
+    )
+    .unwrap();
+    refused(&moduli(here, &bare), 3, &["bare.toml", "--spec"]);
     refused(&with_root("gripper"), 3, &["gripper", "directory"]);
     let spec = std::fs::read_to_string(here.join(toml)).unwrap();
     let unknown = spec.replace("tips = [\"left\"]", "tips = [\"thumb\"]");
