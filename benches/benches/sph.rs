@@ -59,28 +59,49 @@ fn reading(c: &mut Criterion) {
     let points = even_directions(1000);
     let field = Field::new(&beta);
     let mut at = 0;
-    c.bench_function("field jet, 1e-9, anywhere", |b| {
+    c.bench_function("field jet, anywhere", |b| {
         b.iter(|| {
             at = (at + 377) % points.len();
             field.jet(black_box(&points[at]))
         });
     });
-    // Three contacts, each a little beyond where it was, as an ascent asks for them.
-    let mut contacts = [points[100], points[500], points[900]];
-    let step = Vector3::new(3e-4, -2e-4, 1e-4);
-    c.bench_function("field jet, 1e-9, three points of an ascent", |b| {
-        b.iter(|| {
-            contacts = contacts.map(|p| Direction::new_normalize(p.into_inner() + step));
-            contacts.map(|p| field.jet(black_box(&p)))
-        });
+    ascent(c, "three field jets of an ascent", &points, |p| {
+        field.jet(p)
+    });
+    ascent(
+        c,
+        "three field values and gradients of an ascent",
+        &points,
+        |p| field.value_and_gradient(p),
+    );
+    ascent(c, "three field values of an ascent", &points, |p| {
+        field.value(p)
+    });
+    c.bench_function("batched jets, 1000 points", |b| {
+        b.iter(|| batch::jets(black_box(&beta), &points));
     });
     let basis = Basis::new(DEGREE);
     let mut work = basis.workspace();
     c.bench_function("jet by the full sum", |b| {
         b.iter(|| basis.jet(&beta, black_box(&points[7]), &mut work));
     });
-    c.bench_function("field set-up", |b| {
-        b.iter(|| Field::new(black_box(&beta)))
+    c.bench_function("field set-up", |b| b.iter(|| Field::new(black_box(&beta))));
+}
+
+/// Three contacts a step, each a little beyond where it was.
+fn ascent<T>(
+    c: &mut Criterion,
+    name: &str,
+    points: &[Direction],
+    mut read: impl FnMut(&Direction) -> T,
+) {
+    let mut contacts = [points[100], points[500], points[900]];
+    let step = Vector3::new(3e-4, -2e-4, 1e-4);
+    c.bench_function(name, |b| {
+        b.iter(|| {
+            contacts = contacts.map(|p| Direction::new_normalize(p.into_inner() + step));
+            contacts.map(|p| read(black_box(&p)))
+        });
     });
 }
 

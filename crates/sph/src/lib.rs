@@ -19,6 +19,7 @@ mod fused;
 pub mod grid;
 pub mod index;
 mod kernel;
+mod ladder;
 mod legendre;
 pub mod regression;
 mod rings;

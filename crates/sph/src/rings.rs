@@ -4,8 +4,11 @@
 //! recurrence serves both; and the two real rings are the real and imaginary part of one complex
 //! sequence, so one Fourier transform serves both.
 
+use pulp::Simd;
+
 use crate::fft::{Complex, Fft, LANES, Sign};
-use crate::legendre::Legendre;
+use crate::fused::multiply_add;
+use crate::ladder::{Ladder, Rung};
 
 /// Eight numbers, one a pair of rings.
 pub(crate) type Lane = [f64; LANES];
@@ -24,191 +27,154 @@ pub(crate) struct OrderValues {
     pub(crate) sin: [Lane; 2],
 }
 
-/// Coefficients order by order: [β_{l,m}, β_{l,−m}] for l = m … L, so that sums over l run through
-/// memory in order. The second of the pair is zero for m = 0.
-pub(crate) fn by_order(beta: &[f64]) -> Vec<[f64; 2]> {
-    let degree = beta.len().isqrt() - 1;
-    let mut out = Vec::with_capacity((degree + 1) * (degree + 2) / 2);
-    for m in 0..=degree {
-        for l in m..=degree {
-            let centre = l * l + l;
-            let sin = if m == 0 { 0.0 } else { beta[centre - m] };
-            out.push([beta[centre + m], sin]);
-        }
-    }
-    out
-}
-
-/// The inverse of [`by_order`]; what stands beside m = 0 is ignored.
-pub(crate) fn by_position(pairs: &[[f64; 2]], degree: usize) -> Vec<f64> {
-    let mut out = vec![0.0; crate::index::count(degree)];
-    let mut pairs = pairs.iter();
-    for m in 0..=degree {
-        for (l, &[cos, sin]) in (m..=degree).zip(&mut pairs) {
-            let centre = l * l + l;
-            out[centre + m] = cos;
-            if m > 0 {
-                out[centre - m] = sin;
-            }
-        }
-    }
-    out
-}
-
 /// The sum of vectors, in their order.
-pub(crate) fn add_up(parts: &[Vec<[f64; 2]>], length: usize) -> Vec<[f64; 2]> {
-    let mut sum = vec![[0.0; 2]; length];
+pub(crate) fn add_up(parts: &[Vec<Rung>], length: usize) -> Vec<Rung> {
+    let mut sum = vec![[0.0; 4]; length];
     for part in parts {
         for (s, p) in sum.iter_mut().zip(part) {
-            s[0] += p[0];
-            s[1] += p[1];
+            for k in 0..4 {
+                s[k] += p[k];
+            }
         }
     }
     sum
 }
 
-/// Where order m begins in [`by_order`].
+/// The sums over l of one order. `power` is sinᵐθ; `rungs` are all orders' as by [`Ladder::fold`].
 #[inline(always)]
-pub(crate) fn order_start(degree: usize, m: usize) -> usize {
-    // Σ_{k<m} (L + 1 − k), written without a negative intermediate.
-    m * (2 * degree + 3 - m) / 2
-}
-
-/// The sums over l of one order. `power` is sinᵐθ; `beta` is ordered as by [`by_order`].
-#[inline(always)]
-pub(crate) fn order_sums(
-    legendre: &Legendre,
+pub(crate) fn order_sums<S: Simd>(
+    ladder: &Ladder,
     m: usize,
     z: &Lane,
     power: &Lane,
-    beta: &[[f64; 2]],
+    rungs: &[Rung],
 ) -> OrderValues {
-    let start = order_start(legendre.degree(), m);
-    let beta = &beta[start..start + legendre.degree() + 1 - m];
-    let (first, steps) = legendre.recurrence(m);
-    let mut sums = [[[0.0; LANES]; 2]; 2];
+    let rungs = &rungs[ladder.rungs(m)];
+    let (first, steps) = ladder.recurrence(m);
+    let square = squares(z);
+    let mut sums = [[0.0; LANES]; 4];
     let (mut before, mut here) = ([0.0; LANES], *power);
     for h in &mut here {
         *h *= first;
     }
-    let (lowest, rest) = beta.split_at(1);
-    add_scaled(&mut sums[0], &here, lowest[0]);
-    let mut pairs = steps.chunks_exact(2).zip(rest.chunks_exact(2));
-    for (step_pair, beta) in &mut pairs {
-        step(&mut before, &mut here, z, step_pair[0]);
-        add_scaled(&mut sums[1], &before, beta[0]);
-        step(&mut here, &mut before, z, step_pair[1]);
-        add_scaled(&mut sums[0], &here, beta[1]);
+    let mut pairs = steps.chunks_exact(2).zip(rungs.chunks_exact(2));
+    for (steps, rungs) in &mut pairs {
+        add_scaled::<S>(&mut sums, &here, &rungs[0]);
+        step::<S>(&mut before, &here, &square, steps[0]);
+        add_scaled::<S>(&mut sums, &before, &rungs[1]);
+        step::<S>(&mut here, &before, &square, steps[1]);
     }
-    if rest.len() % 2 == 1 {
-        let last = rest.len() - 1;
-        step(&mut before, &mut here, z, steps[last]);
-        add_scaled(&mut sums[1], &before, rest[last]);
+    if rungs.len() % 2 == 1 {
+        add_scaled::<S>(&mut sums, &here, &rungs[rungs.len() - 1]);
     }
-    let [even, odd] = sums;
     let mut out = OrderValues {
         cos: [[0.0; LANES]; 2],
         sin: [[0.0; LANES]; 2],
     };
     for k in 0..LANES {
-        out.cos[0][k] = even[0][k] + odd[0][k];
-        out.cos[1][k] = even[0][k] - odd[0][k];
-        out.sin[0][k] = even[1][k] + odd[1][k];
-        out.sin[1][k] = even[1][k] - odd[1][k];
+        out.cos[0][k] = multiply_add::<S>(z[k], sums[2][k], sums[0][k]);
+        out.cos[1][k] = multiply_add::<S>(-z[k], sums[2][k], sums[0][k]);
+        out.sin[0][k] = multiply_add::<S>(z[k], sums[3][k], sums[1][k]);
+        out.sin[1][k] = multiply_add::<S>(-z[k], sums[3][k], sums[1][k]);
     }
     out
 }
 
-/// The adjoint of [`order_sums`]: adds Σ_rings value · P̄_l^m to `beta`.
+/// The adjoint of [`order_sums`]: adds Σ_rings value · q_k to `rungs`, for [`Ladder::unfold`].
 #[inline(always)]
-pub(crate) fn add_order(
-    legendre: &Legendre,
+pub(crate) fn add_order<S: Simd>(
+    ladder: &Ladder,
     m: usize,
     z: &Lane,
     power: &Lane,
     values: &OrderValues,
-    beta: &mut [[f64; 2]],
+    rungs: &mut [Rung],
 ) {
-    let start = order_start(legendre.degree(), m);
-    let beta = &mut beta[start..start + legendre.degree() + 1 - m];
-    let (first, steps) = legendre.recurrence(m);
+    let rungs = &mut rungs[ladder.rungs(m)];
+    let (first, steps) = ladder.recurrence(m);
+    let square = squares(z);
     let (mut before, mut here) = ([0.0; LANES], *power);
     for h in &mut here {
         *h *= first;
     }
-    let mut parts = [[[0.0; LANES]; 2]; 2];
-    for k in 0..LANES {
-        parts[0][0][k] = values.cos[0][k] + values.cos[1][k];
-        parts[1][0][k] = values.cos[0][k] - values.cos[1][k];
-        parts[0][1][k] = values.sin[0][k] + values.sin[1][k];
-        parts[1][1][k] = values.sin[0][k] - values.sin[1][k];
+    let mut parts = [[0.0; 4]; LANES];
+    for (k, part) in parts.iter_mut().enumerate() {
+        part[0] = values.cos[0][k] + values.cos[1][k];
+        part[1] = values.sin[0][k] + values.sin[1][k];
+        part[2] = z[k] * (values.cos[0][k] - values.cos[1][k]);
+        part[3] = z[k] * (values.sin[0][k] - values.sin[1][k]);
     }
-    let (lowest, rest) = beta.split_at_mut(1);
-    add_dots(&mut lowest[0], &parts[0], &here);
-    let mut pairs = steps.chunks_exact(2).zip(rest.chunks_exact_mut(2));
-    for (step_pair, beta) in &mut pairs {
-        step(&mut before, &mut here, z, step_pair[0]);
-        add_dots(&mut beta[0], &parts[1], &before);
-        step(&mut here, &mut before, z, step_pair[1]);
-        add_dots(&mut beta[1], &parts[0], &here);
+    let odd = rungs.len() % 2 == 1;
+    let mut pairs = steps.chunks_exact(2).zip(rungs.chunks_exact_mut(2));
+    for (steps, rungs) in &mut pairs {
+        add_dots::<S>(&mut rungs[0], &parts, &here);
+        step::<S>(&mut before, &here, &square, steps[0]);
+        add_dots::<S>(&mut rungs[1], &parts, &before);
+        step::<S>(&mut here, &before, &square, steps[1]);
     }
-    if rest.len() % 2 == 1 {
-        let last = rest.len() - 1;
-        step(&mut before, &mut here, z, steps[last]);
-        add_dots(&mut rest[last], &parts[1], &before);
-    }
-}
-
-/// before ← a z here − b before: the next degree stands in `before`.
-#[inline(always)]
-fn step(before: &mut Lane, here: &mut Lane, z: &Lane, (a, b): (f64, f64)) {
-    for k in 0..LANES {
-        before[k] = a * z[k] * here[k] - b * before[k];
+    if let (true, Some(last)) = (odd, rungs.last_mut()) {
+        add_dots::<S>(last, &parts, &here);
     }
 }
 
 #[inline(always)]
-fn add_scaled(sums: &mut [Lane; 2], values: &Lane, [cos, sin]: [f64; 2]) {
+fn squares(z: &Lane) -> Lane {
+    let mut out = [0.0; LANES];
     for k in 0..LANES {
-        sums[0][k] += values[k] * cos;
-        sums[1][k] += values[k] * sin;
+        out[k] = z[k] * z[k];
+    }
+    out
+}
+
+/// before ← (a z² + b) here − before: the next rung stands in `before`.
+#[inline(always)]
+fn step<S: Simd>(before: &mut Lane, here: &Lane, square: &Lane, (a, b): (f64, f64)) {
+    for k in 0..LANES {
+        let factor = multiply_add::<S>(a, square[k], b);
+        before[k] = multiply_add::<S>(factor, here[k], -before[k]);
     }
 }
 
 #[inline(always)]
-fn add_dots(sums: &mut [f64; 2], parts: &[Lane; 2], values: &Lane) {
-    sums[0] += dot(&parts[0], values);
-    sums[1] += dot(&parts[1], values);
+fn add_scaled<S: Simd>(sums: &mut [Lane; 4], values: &Lane, rung: &Rung) {
+    for (sum, factor) in sums.iter_mut().zip(rung) {
+        for k in 0..LANES {
+            sum[k] = multiply_add::<S>(values[k], *factor, sum[k]);
+        }
+    }
 }
 
+/// Adds Σ_k parts[k] values[k]: the four parts of a lane stand in one register, so that nothing has to
+/// be summed across one.
 #[inline(always)]
-fn dot(a: &Lane, b: &Lane) -> f64 {
-    let mut products = [0.0; LANES];
-    for k in 0..LANES {
-        products[k] = a[k] * b[k];
+fn add_dots<S: Simd>(rung: &mut Rung, parts: &[Rung; LANES], values: &Lane) {
+    let mut sums = [*rung, [0.0; 4]];
+    for (k, part) in parts.iter().enumerate() {
+        let sum = &mut sums[k % 2];
+        for j in 0..4 {
+            sum[j] = multiply_add::<S>(part[j], values[k], sum[j]);
+        }
     }
-    let mut half = [0.0; LANES / 2];
-    for k in 0..LANES / 2 {
-        half[k] = products[k] + products[k + LANES / 2];
+    for j in 0..4 {
+        rung[j] = sums[0][j] + sums[1][j];
     }
-    (half[0] + half[2]) + (half[1] + half[3])
 }
 
 /// Values of Σ β Y on eight pairs of rings: north real, south imaginary, one element a longitude.
 #[inline(always)]
-pub(crate) fn synthesis(
-    legendre: &Legendre,
+pub(crate) fn synthesis<S: Simd>(
+    ladder: &Ladder,
     fft: &Fft,
     pairs: &Pairs,
-    beta: &[[f64; 2]],
+    rungs: &[Rung],
     values: &mut [Complex],
     scratch: &mut [Complex],
 ) {
     let n = fft.length();
     values.fill(Complex::ZERO);
     let mut power = [1.0; LANES];
-    for m in 0..=legendre.degree() {
-        let sums = order_sums(legendre, m, &pairs.z, &power, beta);
+    for m in 0..=ladder.degree() {
+        let sums = order_sums::<S>(ladder, m, &pairs.z, &power, rungs);
         if m == 0 {
             values[0].re = sums.cos[0];
             values[0].im = sums.cos[1];
@@ -226,20 +192,20 @@ pub(crate) fn synthesis(
     fft.run(Sign::Plus, values, scratch);
 }
 
-/// The adjoint of [`synthesis`]: adds Σ value · Y over the rings to `beta`; `values` is used up.
+/// The adjoint of [`synthesis`]: adds Σ value · Y over the rings to `rungs`; `values` is used up.
 #[inline(always)]
-pub(crate) fn add_analysis(
-    legendre: &Legendre,
+pub(crate) fn add_analysis<S: Simd>(
+    ladder: &Ladder,
     fft: &Fft,
     pairs: &Pairs,
-    beta: &mut [[f64; 2]],
+    rungs: &mut [Rung],
     values: &mut [Complex],
     scratch: &mut [Complex],
 ) {
     let n = fft.length();
     fft.run(Sign::Minus, values, scratch);
     let mut power = [1.0; LANES];
-    for m in 0..=legendre.degree() {
+    for m in 0..=ladder.degree() {
         let (up, down) = (&values[m], &values[(n - m) % n]);
         let mut sums = OrderValues {
             cos: [[0.0; LANES]; 2],
@@ -251,7 +217,7 @@ pub(crate) fn add_analysis(
             sums.sin[0][k] = 0.5 * (down.im[k] - up.im[k]);
             sums.sin[1][k] = 0.5 * (up.re[k] - down.re[k]);
         }
-        add_order(legendre, m, &pairs.z, &power, &sums, beta);
+        add_order::<S>(ladder, m, &pairs.z, &power, &sums, rungs);
         multiply(&mut power, &pairs.sin);
     }
 }

@@ -16,8 +16,8 @@ use self::passes::{
 };
 use crate::fft::{Complex, Fft, LANES, smooth_length};
 use crate::kernel::{Kernel, OVERSAMPLING, REACH, TAPS};
-use crate::legendre::Legendre;
-use crate::rings::{OrderValues, Pairs, add_up, by_order, by_position, order_start};
+use crate::ladder::{Ladder, Rung};
+use crate::rings::{OrderValues, Pairs, add_up};
 
 /// Fine grid values: rows of equal θ from a little before the north pole to a little beyond the
 /// south pole, columns of equal φ with the first and last few repeated.
@@ -30,7 +30,7 @@ pub(crate) struct TorusGrid {
 #[derive(Clone, Debug)]
 pub(crate) struct Torus {
     degree: usize,
-    legendre: Legendre,
+    ladder: Ladder,
     kernel: Kernel,
     /// Around the θ circle through the rings where harmonics are summed.
     coarse: Fft,
@@ -81,7 +81,7 @@ impl Torus {
             .collect();
         Self {
             degree,
-            legendre: Legendre::new(degree),
+            ladder: Ladder::new(degree),
             kernel,
             coarse: Fft::new(coarse),
             theta: Fft::new(fine),
@@ -163,15 +163,15 @@ impl Torus {
 
     /// c_m − i s_m on the coarse rings, ring after ring; halved for m > 0.
     fn ring_modes(&self, beta: &[f64]) -> Modes {
-        let beta = &by_order(beta);
+        let rungs = &self.ladder.fold(beta);
         let blocks: Vec<Vec<OrderValues>> = self
             .blocks
             .par_iter()
             .map(|pairs| {
                 Arch::new().dispatch(SumDegrees {
-                    legendre: &self.legendre,
+                    ladder: &self.ladder,
                     pairs,
-                    beta,
+                    rungs,
                 })
             })
             .collect();
@@ -201,12 +201,11 @@ impl Torus {
 
     /// Adds up rings · P̄_l^m; the adjoint of [`Torus::ring_modes`] without its halving.
     fn sum_rings(&self, rings: &Modes) -> Vec<f64> {
-        let count = order_start(self.degree, self.degree + 1);
         let last = self.ring_count() - 1;
-        let parts: Vec<Vec<[f64; 2]>> = (0..self.blocks.len())
+        let parts: Vec<Vec<Rung>> = (0..self.blocks.len())
             .into_par_iter()
             .map(|block| {
-                let mut beta = vec![[0.0; 2]; count];
+                let mut rungs = vec![[0.0; 4]; self.ladder.len()];
                 let mut values = vec![ZERO_ORDER; self.degree + 1];
                 for (j, north, south) in self.pair_list(last) {
                     if j / LANES != block {
@@ -224,15 +223,15 @@ impl Torus {
                     }
                 }
                 Arch::new().dispatch(AddDegrees {
-                    legendre: &self.legendre,
+                    ladder: &self.ladder,
                     pairs: &self.blocks[block],
                     values: &values,
-                    beta: &mut beta,
+                    rungs: &mut rungs,
                 });
-                beta
+                rungs
             })
             .collect();
-        by_position(&add_up(&parts, count), self.degree)
+        self.ladder.unfold(&add_up(&parts, self.ladder.len()))
     }
 
     /// From coarse rings to fine rows, order by order.

@@ -4,8 +4,8 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::fft::{Complex, Fft, LANES, smooth_length};
-use crate::legendre::Legendre;
-use crate::rings::{Pairs, add_analysis, add_up, by_order, by_position, order_start, synthesis};
+use crate::ladder::{Ladder, Rung};
+use crate::rings::{Pairs, add_analysis, add_up, synthesis};
 
 /// Whether rings and longitudes suit the functions below: ring j mirrors ring n−1−j, and the
 /// longitudes are a smooth number that tells all orders apart.
@@ -31,18 +31,18 @@ fn pairs(rings: &[(f64, f64)], first: usize) -> Pairs {
 
 /// Values of Σ β Y, ring after ring.
 pub(crate) fn to_rings(rings: &[(f64, f64)], longitudes: usize, beta: &[f64]) -> Vec<f64> {
-    let legendre = Legendre::new(beta.len().isqrt() - 1);
+    let ladder = Ladder::new(beta.len().isqrt() - 1);
     let fft = Fft::new(longitudes);
-    let beta = &by_order(beta);
+    let rungs = &ladder.fold(beta);
     let count = rings.len().div_ceil(2);
     let blocks: Vec<Vec<Complex>> = (0..count.div_ceil(LANES))
         .into_par_iter()
         .map(|block| {
             Arch::new().dispatch(ToRings {
-                legendre: &legendre,
+                ladder: &ladder,
                 fft: &fft,
                 pairs: pairs(rings, block * LANES),
-                beta,
+                rungs,
             })
         })
         .collect();
@@ -72,11 +72,10 @@ pub(crate) fn from_rings(
     values: &[f64],
     degree: usize,
 ) -> Vec<f64> {
-    let legendre = Legendre::new(degree);
+    let ladder = Ladder::new(degree);
     let fft = Fft::new(longitudes);
     let count = rings.len().div_ceil(2);
-    let unknowns = order_start(degree, degree + 1);
-    let parts: Vec<Vec<[f64; 2]>> = (0..count.div_ceil(LANES))
+    let parts: Vec<Vec<Rung>> = (0..count.div_ceil(LANES))
         .into_par_iter()
         .map(|block| {
             let first = block * LANES;
@@ -93,25 +92,25 @@ pub(crate) fn from_rings(
                     }
                 }
             }
-            let mut beta = vec![[0.0; 2]; unknowns];
+            let mut rungs = vec![[0.0; 4]; ladder.len()];
             Arch::new().dispatch(FromRings {
-                legendre: &legendre,
+                ladder: &ladder,
                 fft: &fft,
                 pairs: pairs(rings, first),
-                beta: &mut beta,
+                rungs: &mut rungs,
                 data: &mut data,
             });
-            beta
+            rungs
         })
         .collect();
-    by_position(&add_up(&parts, unknowns), degree)
+    ladder.unfold(&add_up(&parts, ladder.len()))
 }
 
 struct ToRings<'a> {
-    legendre: &'a Legendre,
+    ladder: &'a Ladder,
     fft: &'a Fft,
     pairs: Pairs,
-    beta: &'a [[f64; 2]],
+    rungs: &'a [Rung],
 }
 
 impl WithSimd for ToRings<'_> {
@@ -121,11 +120,11 @@ impl WithSimd for ToRings<'_> {
     fn with_simd<S: Simd>(self, _simd: S) -> Vec<Complex> {
         let mut values = vec![Complex::ZERO; self.fft.length()];
         let mut scratch = values.clone();
-        synthesis(
-            self.legendre,
+        synthesis::<S>(
+            self.ladder,
             self.fft,
             &self.pairs,
-            self.beta,
+            self.rungs,
             &mut values,
             &mut scratch,
         );
@@ -134,10 +133,10 @@ impl WithSimd for ToRings<'_> {
 }
 
 struct FromRings<'a> {
-    legendre: &'a Legendre,
+    ladder: &'a Ladder,
     fft: &'a Fft,
     pairs: Pairs,
-    beta: &'a mut [[f64; 2]],
+    rungs: &'a mut [Rung],
     data: &'a mut [Complex],
 }
 
@@ -147,11 +146,11 @@ impl WithSimd for FromRings<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
         let mut scratch = vec![Complex::ZERO; self.fft.length()];
-        add_analysis(
-            self.legendre,
+        add_analysis::<S>(
+            self.ladder,
             self.fft,
             &self.pairs,
-            self.beta,
+            self.rungs,
             self.data,
             &mut scratch,
         );

@@ -21,8 +21,9 @@ fn surface(degree: usize) -> Coefficients {
     beta
 }
 
-fn places() -> Vec<Direction> {
-    let mut all = even_directions(3000);
+/// Directions spread evenly, then the ends of the axes and points close to them.
+fn places(spread: usize) -> Vec<Direction> {
+    let mut all = even_directions(spread);
     let near = Vector3::new(2e-9, -1e-9, 3e-9);
     for axis in [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()] {
         all.extend([axis, -axis, retract(&axis, &near), retract(&-axis, &near)]);
@@ -42,7 +43,8 @@ fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
 
 /// Worst differences of the fast sums from the plain ones, over the largest value.
 fn sums(degree: usize) -> [f64; 2] {
-    let (beta, points) = (surface(degree), places());
+    // The plain path takes its time at high degrees.
+    let (beta, points) = (surface(degree), places(150_000 / degree));
     let basis = Basis::new(degree);
     let mut work = basis.workspace();
     let mut harmonics = vec![0.0; basis.len()];
@@ -86,17 +88,14 @@ fn jet_errors(beta: &Coefficients, points: &[Direction], found: &[Jet]) -> [f64;
 }
 
 fn field(degree: usize) -> [f64; 3] {
-    let (beta, points) = (surface(degree), places());
+    let (beta, points) = (surface(degree), places(3000));
     let field = Field::new(&beta);
     let found: Vec<Jet> = points.iter().map(|p| field.jet(p)).collect();
     jet_errors(&beta, &points, &found)
 }
 
-/// A part of the places: the plain path takes its time.
 fn batched(degree: usize) -> [f64; 3] {
-    let beta = surface(degree);
-    let (spread, ends) = (places(), places().split_off(3000));
-    let points: Vec<Direction> = spread.into_iter().step_by(15).chain(ends).collect();
+    let (beta, points) = (surface(degree), places(200));
     jet_errors(&beta, &points, &batch::jets(&beta, &points))
 }
 

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 use crate::coefficients::Coefficients;
 use crate::fft::{Complex, Fft, LANES, smooth_length};
 use crate::grid::gauss_legendre;
-use crate::legendre::Legendre;
-use crate::rings::{Pairs, add_analysis, add_up, by_order, by_position, synthesis};
+use crate::ladder::{Ladder, Rung};
+use crate::rings::{Pairs, add_analysis, add_up, synthesis};
 
 /// Pairs of rings that one task owns, in units of [`LANES`]; fixed, so that sums never depend on
 /// the number of threads.
@@ -16,7 +16,7 @@ const BLOCKS_A_TASK: usize = 4;
 /// b ↦ Sᵀ diag(ω g) S b with S the degree-L synthesis on a Gauss–Legendre grid: the coefficients up
 /// to degree L of g times the function b, whenever the grid is exact for their product.
 pub(super) struct Multiplier {
-    legendre: Legendre,
+    ladder: Ladder,
     fft: Fft,
     blocks: Vec<Pairs>,
     /// ω g of every block, longitude after longitude; north real, south imaginary.
@@ -37,15 +37,15 @@ impl Multiplier {
         let fft = Fft::new(smooth_length(longitudes.max(2 * g.degree() + 1)));
         let n = fft.length();
         let (blocks, weights) = ring_pairs(rings);
-        let coefficients = by_order(g.as_slice());
-        let legendre = Legendre::new(g.degree());
+        let ladder = Ladder::new(g.degree());
+        let rungs = ladder.fold(g.as_slice());
         let mut factors = vec![Complex::ZERO; blocks.len() * n];
         for ((pairs, weights), factors) in blocks.iter().zip(&weights).zip(factors.chunks_mut(n)) {
             Arch::new().dispatch(Synthesis {
-                legendre: &legendre,
+                ladder: &ladder,
                 fft: &fft,
                 pairs,
-                beta: &coefficients,
+                rungs: &rungs,
                 values: factors,
             });
             let cell = std::f64::consts::TAU / n as f64;
@@ -57,7 +57,7 @@ impl Multiplier {
             }
         }
         Self {
-            legendre: Legendre::new(degree),
+            ladder: Ladder::new(degree),
             fft,
             blocks,
             factors,
@@ -67,23 +67,23 @@ impl Multiplier {
     /// The product's coefficients. About 6·rings·L² flops and two Fourier transforms a ring.
     pub(super) fn apply(&self, beta: &[f64]) -> Vec<f64> {
         let n = self.fft.length();
-        let beta = &by_order(beta);
+        let rungs = &self.ladder.fold(beta);
         let tasks = self.blocks.par_chunks(BLOCKS_A_TASK);
-        let parts: Vec<Vec<[f64; 2]>> = tasks
+        let parts: Vec<Vec<Rung>> = tasks
             .zip(self.factors.par_chunks(BLOCKS_A_TASK * n))
             .map(|(blocks, factors)| {
-                let mut out = vec![[0.0; 2]; beta.len()];
+                let mut out = vec![[0.0; 4]; rungs.len()];
                 Arch::new().dispatch(Apply {
                     operator: self,
                     blocks,
                     factors,
-                    beta,
+                    rungs,
                     out: &mut out,
                 });
                 out
             })
             .collect();
-        by_position(&add_up(&parts, beta.len()), self.legendre.degree())
+        self.ladder.unfold(&add_up(&parts, self.ladder.len()))
     }
 }
 
@@ -117,10 +117,10 @@ fn ring_pairs(rings: usize) -> (Vec<Pairs>, Vec<Complex>) {
 }
 
 struct Synthesis<'a> {
-    legendre: &'a Legendre,
+    ladder: &'a Ladder,
     fft: &'a Fft,
     pairs: &'a Pairs,
-    beta: &'a [[f64; 2]],
+    rungs: &'a [Rung],
     values: &'a mut [Complex],
 }
 
@@ -130,11 +130,11 @@ impl WithSimd for Synthesis<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
         let mut scratch = vec![Complex::ZERO; self.fft.length()];
-        synthesis(
-            self.legendre,
+        synthesis::<S>(
+            self.ladder,
             self.fft,
             self.pairs,
-            self.beta,
+            self.rungs,
             self.values,
             &mut scratch,
         );
@@ -145,8 +145,8 @@ struct Apply<'a> {
     operator: &'a Multiplier,
     blocks: &'a [Pairs],
     factors: &'a [Complex],
-    beta: &'a [[f64; 2]],
-    out: &'a mut [[f64; 2]],
+    rungs: &'a [Rung],
+    out: &'a mut [Rung],
 }
 
 impl WithSimd for Apply<'_> {
@@ -154,19 +154,19 @@ impl WithSimd for Apply<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
-        let (legendre, fft) = (&self.operator.legendre, &self.operator.fft);
+        let (ladder, fft) = (&self.operator.ladder, &self.operator.fft);
         let n = fft.length();
         let mut values = vec![Complex::ZERO; n];
         let mut scratch = vec![Complex::ZERO; n];
         for (pairs, factors) in self.blocks.iter().zip(self.factors.chunks(n)) {
-            synthesis(legendre, fft, pairs, self.beta, &mut values, &mut scratch);
+            synthesis::<S>(ladder, fft, pairs, self.rungs, &mut values, &mut scratch);
             for (value, factor) in values.iter_mut().zip(factors) {
                 for k in 0..LANES {
                     value.re[k] *= factor.re[k];
                     value.im[k] *= factor.im[k];
                 }
             }
-            add_analysis(legendre, fft, pairs, self.out, &mut values, &mut scratch);
+            add_analysis::<S>(ladder, fft, pairs, self.out, &mut values, &mut scratch);
         }
     }
 }

@@ -5,7 +5,7 @@ use pulp::{Simd, WithSimd};
 use super::{Modes, Torus};
 use crate::fft::{Complex, LANES, Sign};
 use crate::kernel::REACH;
-use crate::legendre::Legendre;
+use crate::ladder::{Ladder, Rung};
 use crate::rings::{Lane, OrderValues, Pairs, add_order, multiply, order_sums};
 
 /// Eight orders at a place.
@@ -30,9 +30,9 @@ fn parities(first: usize) -> Lane {
 }
 
 pub(super) struct SumDegrees<'a> {
-    pub(super) legendre: &'a Legendre,
+    pub(super) ladder: &'a Ladder,
     pub(super) pairs: &'a Pairs,
-    pub(super) beta: &'a [[f64; 2]],
+    pub(super) rungs: &'a [Rung],
 }
 
 impl WithSimd for SumDegrees<'_> {
@@ -41,14 +41,14 @@ impl WithSimd for SumDegrees<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) -> Self::Output {
         let mut power = [1.0; LANES];
-        let mut out = Vec::with_capacity(self.legendre.degree() + 1);
-        for m in 0..=self.legendre.degree() {
-            out.push(order_sums(
-                self.legendre,
+        let mut out = Vec::with_capacity(self.ladder.degree() + 1);
+        for m in 0..=self.ladder.degree() {
+            out.push(order_sums::<S>(
+                self.ladder,
                 m,
                 &self.pairs.z,
                 &power,
-                self.beta,
+                self.rungs,
             ));
             multiply(&mut power, &self.pairs.sin);
         }
@@ -57,10 +57,10 @@ impl WithSimd for SumDegrees<'_> {
 }
 
 pub(super) struct AddDegrees<'a> {
-    pub(super) legendre: &'a Legendre,
+    pub(super) ladder: &'a Ladder,
     pub(super) pairs: &'a Pairs,
     pub(super) values: &'a [OrderValues],
-    pub(super) beta: &'a mut [[f64; 2]],
+    pub(super) rungs: &'a mut [Rung],
 }
 
 impl WithSimd for AddDegrees<'_> {
@@ -70,7 +70,7 @@ impl WithSimd for AddDegrees<'_> {
     fn with_simd<S: Simd>(self, _simd: S) {
         let mut power = [1.0; LANES];
         for (m, values) in self.values.iter().enumerate() {
-            add_order(self.legendre, m, &self.pairs.z, &power, values, self.beta);
+            add_order::<S>(self.ladder, m, &self.pairs.z, &power, values, self.rungs);
             multiply(&mut power, &self.pairs.sin);
         }
     }

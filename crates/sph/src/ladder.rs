@@ -1,0 +1,206 @@
+//! Sums over degrees, two degrees a step.
+//!
+//! Of one order m only P̄_m, P̄_{m+2}, … are computed, by a recurrence in z²; the degrees between are
+//! z times combinations of them, since z P̄_l = ε_{l+1} P̄_{l+1} + ε_l P̄_{l−1}, ε_lm = 1/a_lm of
+//! [`crate::legendre`], and those combinations are taken of the coefficients beforehand (Ishioka
+//! 2018). With P̄_{m+2k} = α_k q_k the steps have the form q_{k+1} = (A_k z² + B_k) q_k − q_{k−1}: a
+//! third of the work of one degree a step.
+
+use crate::index;
+use crate::legendre::Legendre;
+
+/// What stands before q_k: cosine and sine of the even degrees, then cosine and sine of z times the
+/// odd ones.
+pub(crate) type Rung = [f64; 4];
+
+/// The recurrences of all orders up to a degree.
+#[derive(Clone, Debug)]
+pub(crate) struct Ladder {
+    degree: usize,
+    /// P̄_m^m / sinᵐθ.
+    first: Vec<f64>,
+    /// (A_k, B_k), order after order; as many as rungs.
+    steps: Vec<(f64, f64)>,
+    /// α_k.
+    scales: Vec<f64>,
+    /// (1/ε_{m+2k+1}, ε_{m+2k+2}); the first is zero where there is no such degree.
+    links: Vec<(f64, f64)>,
+    /// Where each order begins, and the number of rungs.
+    starts: Vec<usize>,
+}
+
+impl Ladder {
+    /// About L²/2 square roots.
+    pub(crate) fn new(degree: usize) -> Self {
+        let legendre = Legendre::new(degree + 2);
+        let mut out = Self {
+            degree,
+            first: Vec::with_capacity(degree + 1),
+            steps: Vec::new(),
+            scales: Vec::new(),
+            links: Vec::new(),
+            starts: vec![0],
+        };
+        for m in 0..=degree {
+            let (first, steps) = legendre.recurrence(m);
+            out.first.push(first);
+            // ε of degree m + i.
+            let epsilon = |i: usize| if i == 0 { 0.0 } else { 1.0 / steps[i - 1].0 };
+            let (mut before, mut here) = (1.0, 1.0);
+            for i in (0..=degree - m).step_by(2) {
+                let ahead = epsilon(i + 2) * epsilon(i + 1);
+                let behind = if i == 0 {
+                    ahead
+                } else {
+                    epsilon(i) * epsilon(i - 1)
+                };
+                let next = behind / ahead * before;
+                let slope = here / (ahead * next);
+                let middle = epsilon(i + 1).powi(2) + epsilon(i).powi(2);
+                out.steps.push((slope, -middle * slope));
+                out.scales.push(here);
+                let odd = if m + i < degree {
+                    1.0 / epsilon(i + 1)
+                } else {
+                    0.0
+                };
+                out.links.push((odd, epsilon(i + 2)));
+                (before, here) = (here, next);
+            }
+            out.starts.push(out.steps.len());
+        }
+        out
+    }
+
+    /// L.
+    pub(crate) fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// Number of rungs of all orders.
+    pub(crate) fn len(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// The rungs of order m.
+    #[inline(always)]
+    pub(crate) fn rungs(&self, m: usize) -> std::ops::Range<usize> {
+        self.starts[m]..self.starts[m + 1]
+    }
+
+    /// q_0 without sinᵐθ, and the steps of order m.
+    #[inline(always)]
+    pub(crate) fn recurrence(&self, m: usize) -> (f64, &[(f64, f64)]) {
+        (self.first[m], &self.steps[self.rungs(m)])
+    }
+
+    /// What stands before every q_k in Σ β P̄.
+    pub(crate) fn fold(&self, beta: &[f64]) -> Vec<Rung> {
+        let at = |l: usize, m: usize| {
+            let centre = l * l + l;
+            let sin = if m == 0 { 0.0 } else { beta[centre - m] };
+            [beta[centre + m], sin]
+        };
+        let mut out = vec![[0.0; 4]; self.len()];
+        for m in 0..=self.degree {
+            let mut above = [0.0; 2];
+            for (k, i) in self.rungs(m).enumerate().rev() {
+                let l = m + 2 * k;
+                let (inverse, next) = self.links[i];
+                let even = at(l, m);
+                let odd = if l < self.degree {
+                    at(l + 1, m)
+                } else {
+                    [0.0; 2]
+                };
+                for part in 0..2 {
+                    above[part] = (odd[part] - next * above[part]) * inverse;
+                    out[i][part] = self.scales[i] * even[part];
+                    out[i][2 + part] = self.scales[i] * above[part];
+                }
+            }
+        }
+        out
+    }
+
+    /// The adjoint of [`Ladder::fold`].
+    pub(crate) fn unfold(&self, rungs: &[Rung]) -> Vec<f64> {
+        let mut out = vec![0.0; index::count(self.degree)];
+        for m in 0..=self.degree {
+            let mut put = |l: usize, [cos, sin]: [f64; 2]| {
+                let centre = l * l + l;
+                out[centre + m] = cos;
+                if m > 0 {
+                    out[centre - m] = sin;
+                }
+            };
+            let mut below = [0.0; 2];
+            for (k, i) in self.rungs(m).enumerate() {
+                let l = m + 2 * k;
+                let scaled = rungs[i].map(|x| self.scales[i] * x);
+                put(l, [scaled[0], scaled[1]]);
+                if l < self.degree {
+                    let (inverse, next) = self.links[i];
+                    let odd = [0, 1].map(|part| (scaled[2 + part] - below[part]) * inverse);
+                    put(l + 1, odd);
+                    below = odd.map(|x| next * x);
+                }
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rungs_sum_to_the_functions_and_unfold_is_the_adjoint() {
+        for degree in [0, 1, 2, 3, 8, 9, 60] {
+            let ladder = Ladder::new(degree);
+            let legendre = Legendre::new(degree);
+            let beta: Vec<f64> = (0..index::count(degree))
+                .map(|i| (1.3 * i as f64).sin())
+                .collect();
+            let rungs = ladder.fold(&beta);
+            for m in 0..=degree {
+                for z in [-1.0, -0.3, 0.0, 0.8] {
+                    let (first, steps) = ladder.recurrence(m);
+                    let (mut before, mut here) = (0.0, first);
+                    let (mut sum, mut size) = (0.0, 0.0);
+                    for (rung, (a, b)) in rungs[ladder.rungs(m)].iter().zip(steps) {
+                        sum += (rung[0] + z * rung[2]) * here;
+                        (before, here) = (here, (a * z * z + b) * here - before);
+                    }
+                    let mut column = vec![0.0; degree - m + 1];
+                    legendre.column(m, z, &mut column);
+                    let mut plain = 0.0;
+                    for (l, pi) in (m..).zip(&column) {
+                        plain += pi * beta[l * l + l + m];
+                        size += pi.abs();
+                    }
+                    assert!(
+                        (sum - plain).abs() <= 1e-13 * size,
+                        "L={degree} m={m} z={z}"
+                    );
+                }
+            }
+            // ⟨fold β, r⟩ = ⟨β, unfold r⟩ for rungs that a sum may have: no sine of order 0.
+            let mut other: Vec<Rung> = (0..ladder.len())
+                .map(|i| std::array::from_fn(|j| (0.7 * (4 * i + j) as f64).cos()))
+                .collect();
+            for rung in &mut other[ladder.rungs(0)] {
+                (rung[1], rung[3]) = (0.0, 0.0);
+            }
+            let left: f64 = rungs
+                .iter()
+                .zip(&other)
+                .map(|(a, b)| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>())
+                .sum();
+            let back = ladder.unfold(&other);
+            let right: f64 = back.iter().zip(&beta).map(|(a, b)| a * b).sum();
+            assert!((left - right).abs() <= 1e-11 * (1.0 + left.abs()));
+        }
+    }
+}
