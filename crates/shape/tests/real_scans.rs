@@ -2,22 +2,17 @@
 
 mod common;
 
-use common::{cloud, index, noisy, objects, shuffled};
+use common::{SETTINGS, cloud, index, noisy, objects, shuffled};
 use nalgebra::{DMatrix, DVector, Point3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use shape::fit::{Fit, FitError, FitSettings, fit};
+use shape::fit::{Fit, FitError, fit};
 use shape::point_cloud::RadialSamples;
 use shape::{PointCloud, Surface, star_shape};
 use sph::direction::even_directions;
 use sph::grid::RingGrid;
 use sph::regression::{Penalty, Samples, gram};
 use sph::{Coefficients, Direction, batch};
-
-const SETTINGS: FitSettings = FitSettings {
-    degree: 50,
-    lambda: None,
-};
 
 /// Root mean square of r(pᵢ) − rᵢ.
 fn rms(beta: &Coefficients, samples: &RadialSamples) -> f64 {
