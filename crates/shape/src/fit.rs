@@ -27,7 +27,8 @@ pub const PENALTY_POWER: i32 = 2;
 /// 2 mm of noise still more than 0.2) and a bowl with its thin wall 0.71.
 pub const MOST_MULTIPLE: f64 = 0.2;
 
-/// The same for a cloud with an opening, through which the inside of a wall can be seen.
+/// The same for a cloud with an opening, through which the inside of a wall can be seen. A mug's is
+/// above 0.1 with 2 mm of noise from 12,000 points on, with 1 mm from 5,000.
 pub const MOST_MULTIPLE_OPEN: f64 = 0.1;
 
 /// [`StarShape::unseen`] above which a cloud is refused: a line, a sheet or a handful of points. A
