@@ -50,7 +50,8 @@ fn assert_sane(name: &str, cloud: &PointCloud, fit: &Fit) {
     let (low, high) = fit.shape.radius_bounds();
     let radii = cloud.seen_from(&fit.centre_in_cloud).radii;
     let largest = radii.iter().fold(0.0_f64, |a, b| a.max(*b));
-    assert!(low > 0.0, "{name}: {low}");
+    let least = radii.iter().fold(f64::INFINITY, |a, b| a.min(*b));
+    assert!(low > 0.0 && low >= 0.25 * least, "{name}: {low} {least}");
     assert!(high <= 1.25 * largest, "{name}: {high} {largest}");
 }
 
