@@ -34,6 +34,20 @@ pub(crate) struct Movement<'a> {
     pub(crate) start: Instant,
 }
 
+/// Moves grasps over the threads; of several failures the one of the first grasp is returned, so
+/// that threads do not decide which.
+pub(crate) fn move_all(
+    grasps: &[Placed],
+    one: impl Fn(usize, &Placed) -> Result<Moved, Failure> + Sync,
+) -> Result<Vec<Moved>, Failure> {
+    let ends: Vec<Result<Moved, Failure>> = grasps
+        .par_iter()
+        .enumerate()
+        .map(|(i, placed)| one(i, placed))
+        .collect();
+    ends.into_iter().collect()
+}
+
 impl Movement<'_> {
     /// Moves all grasps over the threads, writes the files and says what happened; refuses when no
     /// grasp is closed.
@@ -45,15 +59,10 @@ impl Movement<'_> {
         one: impl Fn(usize, &Placed) -> Result<Moved, Failure> + Sync,
     ) -> Result<(), Failure> {
         let bar = output::progress(common.quiet, grasps.len(), self.doing);
-        let moved = grasps
-            .par_iter()
-            .enumerate()
-            .map(|(i, placed)| {
-                let moved = one(i, placed)?;
-                bar.inc(1);
-                Ok(moved)
-            })
-            .collect::<Result<Vec<_>, Failure>>()?;
+        let moved = move_all(grasps, |i, placed| {
+            bar.inc(1);
+            one(i, placed)
+        })?;
         bar.finish_and_clear();
         if let Some(path) = &options.trace {
             output::write_file(path, &output::encode(&self.trace_file(&moved))?)?;

@@ -26,7 +26,7 @@ pub(crate) fn load(options: &HandOptions) -> Result<Hand, Failure> {
     let model: HandModel = load_urdf_with_meshes(&text(urdf)?, |name| folders.bytes(name))
         .map_err(|e| Failure::input(urdf, e))?;
     let path = spec_path(options);
-    let spec = HandSpec::from_toml(&text(&path)?).map_err(|e| Failure::input(&path, e))?;
+    let spec = HandSpec::from_toml(&spec_text(options)?).map_err(|e| Failure::input(&path, e))?;
     Hand::new(model, &spec).map_err(|e| {
         Failure::input(
             &path,
@@ -57,6 +57,18 @@ pub(crate) fn built_in() -> Result<Hand, Failure> {
 pub(crate) fn spec_path(options: &HandOptions) -> PathBuf {
     let beside = || options.hand.with_extension("toml");
     options.spec.clone().unwrap_or_else(beside)
+}
+
+/// The text of the TOML.
+pub(crate) fn spec_text(options: &HandOptions) -> Result<String, Failure> {
+    let path = spec_path(options);
+    if options.spec.is_none() && !path.exists() {
+        return Err(Failure::input(
+            &path,
+            "no such file; a hand needs a TOML beside its URDF, or --spec TOML (docs/bring-your-own-hand.md)",
+        ));
+    }
+    text(&path)
 }
 
 /// A text file.

@@ -220,6 +220,83 @@ fn transfers_end_on_the_target_in_its_own_frame() {
 }
 
 #[test]
+fn many_transfers_go_on_where_they_were_interrupted() {
+    let folder = prepared();
+    let here = folder.path();
+    fitted(here, "drop", [0.03, 0.036, 0.04], [0.1, 0.0, 0.0]);
+    let whole = |more: &[&str]| -> Value {
+        let arguments = [
+            "transfer",
+            "--from",
+            "egg.shape",
+            "--to",
+            "ball.shape",
+            "--to",
+            "drop.shape",
+            "--to",
+            "egg.shape",
+            "grasps.json",
+            "-o",
+            "all",
+            "--scheme",
+            "naive",
+            "--json",
+        ];
+        let line = stdout(&moduli(here, &[&arguments[..], more].concat()));
+        serde_json::from_str(&line).unwrap()
+    };
+    let first = whole(&[]);
+    // Not from the egg to itself.
+    assert_eq!(first["pairs"].as_array().unwrap().len(), 2);
+    assert_eq!(
+        (&first["kept_pairs"], &first["grasps"]),
+        (&0.into(), &4.into())
+    );
+    let (ball, drop) = (
+        here.join("all/egg-to-ball.json"),
+        here.join("all/egg-to-drop.json"),
+    );
+    let bytes = [std::fs::read(&ball).unwrap(), std::fs::read(&drop).unwrap()];
+    let table = std::fs::read(here.join("all/transfers.json")).unwrap();
+    for arm in arms(&read(here, "all/egg-to-ball.json"), [0.0, -0.5, 0.0]) {
+        assert!((0.035..0.041).contains(&arm), "{arm} m from the centre");
+    }
+
+    std::fs::write(&ball, &bytes[0][..200]).unwrap();
+    let second = whole(&["--threads", "1"]);
+    assert_eq!(second["kept_pairs"], 1);
+    assert_eq!(second["pairs"], first["pairs"]);
+    assert_eq!(std::fs::read(&ball).unwrap(), bytes[0]);
+    assert_eq!(std::fs::read(&drop).unwrap(), bytes[1]);
+    assert_eq!(
+        std::fs::read(here.join("all/transfers.json")).unwrap(),
+        table
+    );
+    assert_eq!(whole(&[])["kept_pairs"], 2);
+    // What was done under other terms is done again.
+    assert_eq!(whole(&["--friction", "0.9"])["kept_pairs"], 0);
+    // A pair's file is a grasps.json.
+    stdout(&moduli(
+        here,
+        &["ascend", "drop.shape", "all/egg-to-drop.json"],
+    ));
+
+    let with = |more: &[&str]| {
+        let arguments = ["transfer", "--from", "egg.shape", "--to", "ball.shape"];
+        moduli(here, &[&arguments[..], more].concat())
+    };
+    refused(
+        &with(&["--to", "drop.shape", "grasps.json"]),
+        2,
+        &["-o DIR"],
+    );
+    let two = ["grasps.json", "grasps.json", "-o", "all"];
+    refused(&with(&two), 2, &["1 shapes --from and 2 files"]);
+    let twice = ["--to", "ball.shape", "grasps.json", "-o", "all"];
+    refused(&with(&twice), 2, &["two shapes are named ball"]);
+}
+
+#[test]
 fn bad_grasps_are_named() {
     let folder = prepared();
     let here = folder.path();

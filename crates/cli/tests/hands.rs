@@ -127,7 +127,10 @@ fn synthesis_writes_json_yaml_and_a_page() {
     assert_eq!(best["quality"], said["best"]);
     assert_eq!(best["hand"]["palm_link"], "sdh_palm_link");
     let before = &best["hand"]["pregrasp_joints_rad"];
-    assert!((before["sdh_knuckle_joint"].as_f64().unwrap() - 1.047_197_551).abs() <= 1e-8);
+    assert!(
+        (before["sdh_knuckle_joint"].as_f64().unwrap() - std::f64::consts::FRAC_PI_3).abs()
+            <= 1e-12
+    );
     for grasp in file["grasps"].as_array().unwrap() {
         for contact in grasp["contacts_m"].as_array().unwrap() {
             let x = numbers(contact);
@@ -328,6 +331,13 @@ fn hostile_hands_are_refused_by_name() {
     };
     std::fs::write(here.join("empty.toml"), "").unwrap();
     refused(&with_root("empty.toml"), 3, &["empty.toml", "name"]);
+    let bare = ["synthesize", "egg.shape", "--hand", "bare.urdf"];
+    std::fs::write(
+        here.join("bare.urdf"),
+        "<robot name=\"r\"><link name=\"a\"/></robot>",
+    )
+    .unwrap();
+    refused(&moduli(here, &bare), 3, &["bare.toml", "--spec"]);
     refused(&with_root("gripper"), 3, &["gripper", "directory"]);
     let spec = std::fs::read_to_string(here.join(toml)).unwrap();
     let unknown = spec.replace("tips = [\"left\"]", "tips = [\"thumb\"]");

@@ -1,9 +1,12 @@
 //! Closing the fingers of a hand on an object without ever passing through it.
 
+mod wrapping;
+
 use nalgebra::Isometry3;
 
 use crate::collision::{CollisionObject, Precision, first_close_pair};
 use crate::hand::{Finger, Hand};
+use wrapping::wrap_finger;
 
 /// A finger that could close no farther than this in a step has come to rest; in units of closing.
 const LEAST_STEP: f64 = 1e-7;
@@ -17,17 +20,21 @@ pub struct ClosingRules {
     pub object_clearance: f64,
     /// Parts of the hand stay at least this far from each other, metres.
     pub self_clearance: f64,
+    /// Close past the tips (power grasps): where a link other than a tip meets the object it
+    /// holds it as a tip does, the joints that move it stop and those beyond go on.
+    pub past_tips: bool,
     /// Distances are found to this accuracy where they decide, metres.
     pub tolerance: f64,
 }
 
 impl Default for ClosingRules {
-    /// The paper's 1 mm, 5 mm and 5 mm.
+    /// The paper's 1 mm, 5 mm and 5 mm, tips only.
     fn default() -> Self {
         ClosingRules {
             tip_gap: 1e-3,
             object_clearance: 5e-3,
             self_clearance: 5e-3,
+            past_tips: false,
             tolerance: 2e-5,
         }
     }
@@ -77,11 +84,14 @@ pub struct ClosedHand {
     pub joints: Vec<f64>,
     /// Pose of every link in the object frame.
     pub object_from_links: Vec<Isometry3<f64>>,
+    /// Links that hold the object, finger by finger, from the palm outwards.
+    pub touching: Vec<usize>,
     /// Steps taken by all fingers together.
     pub steps: usize,
 }
 
-/// Closes every finger from `joints` until its tip has arrived.
+/// Closes every finger from `joints` until its tip has arrived, or with
+/// [`ClosingRules::past_tips`] until all its joints have stopped.
 ///
 /// Each step is the distance still free divided by a bound on the speed of the moving
 /// points (conservative advancement), so no part passes into the surface. Fingers stop
@@ -96,6 +106,7 @@ pub fn close_hand(
     let mut state = ClosedHand {
         joints: joints.to_vec(),
         object_from_links: vec![*object_from_palm; hand.model.links.len()],
+        touching: Vec::new(),
         steps: 0,
     };
     let links = 1..hand.model.links.len();
@@ -103,7 +114,12 @@ pub fn close_hand(
         .update_links(joints, links, &mut state.object_from_links);
     check_base(object, hand, &state.object_from_links, rules)?;
     for index in 0..hand.fingers.len() {
-        close_finger(object, hand, index, rules, &mut state)?;
+        check_start(object, hand, index, &state.object_from_links)?;
+        if rules.past_tips {
+            wrap_finger(object, hand, index, rules, &mut state)?;
+        } else {
+            close_finger(object, hand, index, rules, &mut state)?;
+        }
     }
     match first_close_pair(hand, &state.object_from_links, rules.self_clearance) {
         Some((first, second, _)) => Err(Rejection::PartsNear { first, second }),
@@ -185,7 +201,6 @@ fn close_finger(
     // The tip is brought to half of the gap, between touching and not having arrived.
     let aim = 0.5 * rules.tip_gap;
     let mut closed = 0.0;
-    check_start(object, hand, index, &state.object_from_links)?;
     loop {
         let (tip_lower, tip_upper) = settle_tip(object, hand, finger, rules, state);
         let free_step = part_step(object, hand, finger, rules, state)?;
@@ -193,6 +208,7 @@ fn close_finger(
             return Err(Rejection::StartsInObject { finger: index });
         }
         if tip_upper + object.mesh_error() < rules.tip_gap {
+            state.touching.extend_from_slice(&finger.tip_links);
             return Ok(());
         }
         if closed >= end {

@@ -27,15 +27,34 @@ pub struct TipContact {
     pub gap: f64,
 }
 
-/// The point of the surface closest to a finger's tip, and its normal.
-///
-/// Starts at the closest point of the mesh and descends on the smooth surface (BFGS in a
-/// chart about the start; the distance to a convex tip is smooth outside it). `None` if
-/// the tip touches or enters the surface.
+/// The point of the surface closest to a finger's tip, and its normal; see [`link_contact`].
 pub fn tip_contact(
     object: &CollisionObject<'_>,
     hand: &Hand,
     finger: &Finger,
+    object_from_links: &[Isometry3<f64>],
+) -> Option<TipContact> {
+    closest(object, hand, &finger.tip_links, object_from_links)
+}
+
+/// The point of the surface closest to a link, and its normal.
+///
+/// Starts at the closest point of the mesh and descends on the smooth surface (BFGS in a
+/// chart about the start; the distance to a convex body is smooth outside it). `None` if
+/// the link touches or enters the surface, or has no geometry.
+pub fn link_contact(
+    object: &CollisionObject<'_>,
+    hand: &Hand,
+    link: usize,
+    object_from_links: &[Isometry3<f64>],
+) -> Option<TipContact> {
+    closest(object, hand, &[link], object_from_links)
+}
+
+fn closest(
+    object: &CollisionObject<'_>,
+    hand: &Hand,
+    links: &[usize],
     object_from_links: &[Isometry3<f64>],
 ) -> Option<TipContact> {
     let precision = Precision {
@@ -43,15 +62,13 @@ pub fn tip_contact(
         absolute: 1e-6,
         relative: 0.0,
     };
-    let start = finger
-        .tip_links
+    let start = links
         .iter()
         .map(|&link| object.link_gap(&hand.shapes[link], &object_from_links[link], precision))
         .min_by(|a, b| a.upper.total_cmp(&b.upper))?
         .on_object?;
     let tip = Tip {
-        links: finger
-            .tip_links
+        links: links
             .iter()
             .map(|&link| (&hand.shapes[link], object_from_links[link]))
             .collect(),

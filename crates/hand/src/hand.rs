@@ -25,6 +25,8 @@ pub struct Finger {
     pub moving_links: Vec<usize>,
     /// For each moving link, a bound on the speed of its points, in metres a unit of closing.
     pub(crate) speed_bounds: Vec<f64>,
+    /// The share of each closing joint in these bounds.
+    pub(crate) joint_speeds: Vec<Vec<f64>>,
 }
 
 /// Joint values from which fingers close.

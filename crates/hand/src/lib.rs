@@ -26,7 +26,7 @@ pub use alignment::carried_pose;
 pub use check::{Finding, Severity, check_hand, hand_meshes};
 pub use closing::{ClosedHand, ClosingRules, Rejection, close_hand};
 pub use collision::{CollisionObject, Gap, GeometryError, ObjectError, Precision};
-pub use contact::{TipContact, tip_contact};
+pub use contact::{TipContact, link_contact, tip_contact};
 pub use hand::{Finger, Hand, HandError, Preshape};
 pub use hand_spec::{FingerSpec, HandSpec, PreshapeSpec, SelfDistance, SpecTextError};
 pub use kinematics::KinematicsError;

@@ -5,6 +5,8 @@ use thiserror::Error;
 
 /// The largest mesh file accepted, in bytes.
 pub(crate) const MAX_MESH_BYTES: usize = 64 << 20;
+/// The largest number of vertices accepted; those of an STL count once a triangle.
+pub(crate) const MAX_MESH_VERTICES: usize = 2_000_000;
 const STL_HEADER: usize = 84;
 const STL_TRIANGLE: usize = 50;
 
@@ -26,6 +28,12 @@ pub enum MeshFileError {
         expected: u64,
         /// The length found.
         bytes: usize,
+    },
+    /// Too many vertices.
+    #[error("{vertices} vertices, more than {MAX_MESH_VERTICES}")]
+    TooMany {
+        /// How many, or at which one reading ended.
+        vertices: u64,
     },
     /// A line that cannot be read.
     #[error("line {line}: expected a vertex with three finite coordinates")]
@@ -78,6 +86,11 @@ fn text_vertices(text: &str) -> Result<Vec<Point3<f64>>, MeshFileError> {
         if !matches!(words.next(), Some("v" | "vertex")) {
             continue;
         }
+        if vertices.len() == MAX_MESH_VERTICES {
+            return Err(MeshFileError::TooMany {
+                vertices: vertices.len() as u64 + 1,
+            });
+        }
         let mut coordinate = || {
             words
                 .next()
@@ -101,6 +114,11 @@ fn binary_stl(bytes: &[u8]) -> Result<Vec<Point3<f64>>, MeshFileError> {
             triangles,
             expected,
             bytes: bytes.len(),
+        });
+    }
+    if 3 * triangles > MAX_MESH_VERTICES as u64 {
+        return Err(MeshFileError::TooMany {
+            vertices: 3 * triangles,
         });
     }
     let coordinate = |b: &[u8]| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]));

@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use crate::closing::{ClosingRules, Rejection, close_hand};
 use crate::collision::{CollisionObject, ObjectError};
-use crate::contact::tip_contact;
+use crate::contact::{TipContact, link_contact, tip_contact};
 use crate::hand::Hand;
 use crate::pose_sampling::{HandPose, PoseSampling};
 
@@ -41,12 +41,15 @@ pub struct HandGrasp {
     pub joints: Vec<f64>,
     /// Index of the pre-shape from which the fingers closed.
     pub preshape: usize,
-    /// One contact a finger, object frame, inward normals.
+    /// One contact a finger, or with [`ClosingRules::past_tips`] one a link that touches; object
+    /// frame, inward normals.
     pub contacts: Vec<Contact>,
     /// Directions of the contacts from the origin: the grasp's point of (S²)^m.
     pub directions: Vec<Direction>,
     /// Distance of each tip from its contact, metres.
     pub gaps: Vec<f64>,
+    /// The link that makes each contact (the first of a finger's tip links).
+    pub links: Vec<usize>,
     /// Quality under the run's convention.
     pub quality: f64,
 }
@@ -229,18 +232,35 @@ fn close_and_touch(
         contacts: Vec::with_capacity(hand.fingers().len()),
         directions: Vec::with_capacity(hand.fingers().len()),
         gaps: Vec::with_capacity(hand.fingers().len()),
+        links: Vec::with_capacity(hand.fingers().len()),
         quality: 0.0,
     };
-    for (finger, tip) in hand.fingers().iter().enumerate() {
-        let contact = tip_contact(object, hand, tip, &closed.object_from_links)
-            .filter(|c| c.gap < rules.tip_gap)
-            .ok_or(Rejection::NoContact { finger })?;
+    let mut touch = |contact: TipContact, links: &[usize]| {
         grasp.contacts.push(Contact {
             position: contact.position,
             inward_normal: contact.inward_normal,
         });
         grasp.directions.push(contact.direction);
         grasp.gaps.push(contact.gap);
+        grasp.links.push(links[0]);
+    };
+    let poses = &closed.object_from_links;
+    for (finger, of_finger) in hand.fingers().iter().enumerate() {
+        let near = |c: &TipContact| c.gap < rules.tip_gap;
+        if !rules.past_tips {
+            let contact = tip_contact(object, hand, of_finger, poses)
+                .filter(near)
+                .ok_or(Rejection::NoContact { finger })?;
+            touch(contact, &of_finger.tip_links);
+            continue;
+        }
+        let moved = |l: &&usize| of_finger.moving_links.contains(l);
+        for &link in closed.touching.iter().filter(moved) {
+            let contact = link_contact(object, hand, link, poses)
+                .filter(near)
+                .ok_or(Rejection::NoContact { finger })?;
+            touch(contact, &[link]);
+        }
     }
     Ok(grasp)
 }

@@ -57,6 +57,16 @@ pub enum UrdfError {
         /// What is wrong.
         what: &'static str,
     },
+    /// A vector with an entry that is no number; the URDF reader would pass over it.
+    #[error("'{word}' in the {what} at byte {byte} is no number")]
+    NotANumber {
+        /// Where the vector stands.
+        byte: usize,
+        /// Which vector: its attribute.
+        what: &'static str,
+        /// The entry, its first 40 characters.
+        word: String,
+    },
     /// A document type (and so possibly entities) is declared.
     #[error("a document type or entity is declared at byte {byte}; URDFs need none")]
     Doctype {

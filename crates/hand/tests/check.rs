@@ -49,6 +49,69 @@ fn spoilt_specs_say_what_is_wrong() {
 }
 
 #[test]
+fn all_problems_of_a_spec_are_named_at_once() {
+    let model = load_urdf(SDH_URDF).unwrap();
+    let good = HandSpec::from_toml(SDH_SPEC).unwrap();
+    assert_eq!(Hand::problems(&model, &good), []);
+    let mut bad = good.clone();
+    bad.palm = "wrist".to_owned();
+    bad.approach_axis = [0.0; 3];
+    bad.standoff_m = [0.2, 0.1];
+    bad.finger[0].tips = vec!["claw".to_owned(), "hook".to_owned()];
+    bad.finger[1].closing.insert("cable".to_owned(), 0.0);
+    bad.preshape[0].joints.insert("lever".to_owned(), 0.0);
+    bad.preshape[1]
+        .joints
+        .insert("sdh_knuckle_joint".to_owned(), 9.0);
+    let named: Vec<String> = Hand::problems(&model, &bad)
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    let expected = [
+        "'wrist'",
+        "approach_axis",
+        "standoff_m",
+        "'claw'",
+        "'hook'",
+        "'cable'",
+        "closing ratio",
+        "'lever'",
+        "'sdh_knuckle_joint' = 9",
+    ];
+    assert_eq!(named.len(), expected.len(), "{named:?}");
+    for (said, word) in named.iter().zip(expected) {
+        assert!(said.contains(word), "{word} is not in {said}");
+    }
+}
+
+/// Whatever one thing is spoilt: no problem means that there is a hand, and the other way round.
+#[test]
+fn problems_are_what_keeps_a_hand_from_being_made() {
+    let spoilers: [fn(&mut HandSpec); 9] = [
+        |_| (),
+        |s| s.finger.truncate(1),
+        |s| s.preshape.clear(),
+        |s| s.finger[1].name = s.finger[0].name.clone(),
+        |s| s.preshape[1].name = s.preshape[0].name.clone(),
+        |s| s.finger[0].closing = s.finger[1].closing.clone(),
+        |s| s.finger[0].tips.clear(),
+        |s| s.approach_point[1] = f64::NAN,
+        |s| {
+            s.self_distance.exempt_pairs = vec![["sdh_palm_link".to_owned(), "moon".to_owned()]];
+        },
+    ];
+    let model = load_urdf(SDH_URDF).unwrap();
+    for (index, spoil) in spoilers.iter().enumerate() {
+        let mut spec = HandSpec::from_toml(SDH_SPEC).unwrap();
+        spoil(&mut spec);
+        let problems = Hand::problems(&model, &spec);
+        let made = Hand::new(model.clone(), &spec).is_ok();
+        assert_eq!(problems.is_empty(), made, "{index}: {problems:?}");
+        assert_eq!(made, index == 0);
+    }
+}
+
+#[test]
 fn pictures_show_every_link_where_it_is() {
     let hand = schunk_sdh().unwrap();
     let joints = &hand.preshapes()[0].joints;

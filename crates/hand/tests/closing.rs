@@ -6,7 +6,8 @@ use common::{
     link_distance, link_meets, links_distance, lump, object_from_links, parry_mesh, seeded,
 };
 use hand::{
-    ClosingRules, CollisionObject, Hand, HandPose, PoseSampling, Rejection, close_hand, schunk_sdh,
+    ClosedHand, ClosingRules, CollisionObject, Hand, HandPose, PoseSampling, Rejection, close_hand,
+    schunk_sdh,
 };
 use nalgebra::UnitVector3;
 use parry3d_f64::shape::TriMesh;
@@ -61,6 +62,72 @@ proptest! {
             prop_assert!(!meets_on_the_way(&hand, &pose, &closed.joints, &mesh));
         }
     }
+}
+
+/// Closes past the tips and returns the grasp's links, or none where the pose is rejected.
+fn wrapped(
+    object: &CollisionObject<'_>,
+    hand: &Hand,
+    from_tips: bool,
+    seed: u64,
+) -> Vec<(HandPose, ClosedHand)> {
+    let mut sampling = PoseSampling::of_hand(hand);
+    // Near enough for the palm side of the fingers to meet the object before the tips do.
+    sampling.standoff = (0.1, 0.14);
+    let rules = ClosingRules {
+        past_tips: !from_tips,
+        ..ClosingRules::default()
+    };
+    let poses = sampling.sample(object.surface(), hand, 24, &mut seeded(seed));
+    let close = |pose: HandPose| {
+        let start = &hand.preshapes()[pose.preshape].joints;
+        let closed = close_hand(object, hand, &pose.object_from_palm, start, &rules).ok()?;
+        Some((pose, closed))
+    };
+    poses.into_iter().filter_map(close).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(6))]
+    #[test]
+    fn power_grasps_are_monotone_never_penetrate_and_touch_where_they_say(
+        radius in 0.03f64..0.045,
+        waves in proptest::collection::vec(-0.1f64..0.1, 24),
+        seed in 0u64..1000,
+    ) {
+        let hand = schunk_sdh().unwrap();
+        let surface = lump(radius, &waves);
+        let object = CollisionObject::new(&surface).unwrap();
+        let mesh = parry_mesh(&surface, 241, 480);
+        for (pose, closed) in wrapped(&object, &hand, false, seed) {
+            let start = &hand.preshapes()[pose.preshape].joints;
+            for (driven, joint) in hand.model().driven_joints().enumerate() {
+                prop_assert!(closed.joints[driven] >= start[driven]);
+                prop_assert!(closed.joints[driven] <= joint.limits.1);
+            }
+            prop_assert!(!meets_on_the_way(&hand, &pose, &closed.joints, &mesh));
+            for &link in &closed.touching {
+                let at = &closed.object_from_links[link];
+                let gap = link_distance(hand.model(), link, at, &mesh, 0.01);
+                prop_assert!(gap > 0.0 && gap < 1e-3, "{}", gap);
+            }
+            for &(a, b) in hand.tested_pairs() {
+                prop_assert!(links_distance(hand.model(), &closed.object_from_links, a, b) >= 5e-3 - 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
+fn power_grasps_hold_with_more_than_the_tips() {
+    let hand = schunk_sdh().unwrap();
+    let surface = RadialShape::sphere(3, 0.04).unwrap();
+    let object = CollisionObject::new(&surface).unwrap();
+    let power = wrapped(&object, &hand, false, 4);
+    let most = power.iter().map(|(_, closed)| closed.touching.len()).max();
+    assert!(most >= Some(5), "{most:?}");
+    // Poses that the rule for tips alone rejects, because another link comes first.
+    assert!(power.len() > wrapped(&object, &hand, true, 4).len());
 }
 
 fn aimed_at(hand: &Hand, surface: &RadialShape, standoff: f64, preshape: usize) -> HandPose {

@@ -137,6 +137,61 @@ fn broken_numbers_are_refused_by_name() {
 }
 
 #[test]
+fn vectors_with_words_among_the_numbers_are_refused() {
+    let piece = |origin: &str, geometry: &str| {
+        robot(&format!(
+            r#"<link name="a"><collision>{origin}<geometry>{geometry}</geometry></collision></link>"#
+        ))
+    };
+    let ball = r#"<sphere radius="0.1"/>"#;
+    let cases = [
+        (piece(r#"<origin xyz="1 x 2 3"/>"#, ball), "'x' in the xyz"),
+        (piece("<origin rpy='0 0 0 ,'/>", ball), "',' in the rpy"),
+        (
+            piece("<origin xyz = '1 1,5 2 3'/>", ball),
+            "'1,5' in the xyz",
+        ),
+        (
+            piece("<origin><xyz>1 2 y 3</xyz></origin>", ball),
+            "'y' in the xyz",
+        ),
+        (piece("", "<box size='1 1 m 1'/>"), "'m' in the size"),
+        (
+            piece("", "<mesh filename='a=\"b' scale='1 1 1 mm'/>"),
+            "'mm' in the scale",
+        ),
+    ];
+    for (text, expected) in cases {
+        let said = load_urdf(&text).unwrap_err().to_string();
+        assert!(said.contains(expected), "{said} lacks {expected}");
+    }
+    let good = piece("<origin rpy='0 0 0' xyz=\"1e-3\n 2 -.5\"/>", ball);
+    assert!(load_urdf(&good).is_ok());
+}
+
+#[test]
+fn huge_meshes_are_refused_by_name_before_they_are_worked_on() {
+    let text = robot(
+        r#"<link name="a"><collision><geometry><mesh filename="m.stl"/></geometry></collision></link>"#,
+    );
+    let refused = |bytes: Vec<u8>| {
+        let result = load_urdf_with_meshes(&text, |_| Ok::<_, String>(bytes.clone()));
+        result.unwrap_err().to_string()
+    };
+    let mut claimed = vec![0u8; 84];
+    claimed[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
+    let said = refused(claimed);
+    assert!(said.contains("'m.stl' of link 'a'") && said.contains("4294967295 triangles"));
+    let said = refused(vec![0u8; (64 << 20) + 1]);
+    assert!(said.contains("'m.stl' of link 'a'") && said.contains("67108865 bytes"));
+    // Within the limit of bytes, but with more vertices than a hull is made of.
+    let mut many = vec![0u8; 84 + 50 * 700_000];
+    many[80..84].copy_from_slice(&700_000u32.to_le_bytes());
+    let said = refused(many);
+    assert!(said.contains("2100000 vertices"), "{said}");
+}
+
+#[test]
 fn bombs_are_refused_before_they_are_parsed() {
     let nested = format!("{}{}", "<a>".repeat(200_000), "</a>".repeat(200_000));
     assert!(matches!(load_urdf(&nested), Err(UrdfError::TooDeep { .. })));

@@ -120,6 +120,33 @@ fn a_hundred_grasps_keep_every_rule_on_a_mesh_four_times_as_fine() {
 }
 
 #[test]
+fn power_grasps_are_measured_over_all_links_that_touch() {
+    let hand = schunk_sdh().unwrap();
+    let surface = egg(0.035, 0.3);
+    let mut params = paper_params(&hand, 100);
+    params.rules.past_tips = true;
+    params.sampling.standoff = (0.1, 0.16);
+    let run = synthesize(&surface, &hand, &params, &mut seeded(5)).unwrap();
+    assert_eq!(run.outcomes.total(), 100);
+    let many = run.grasps.iter().filter(|g| g.contacts.len() > 3).count();
+    assert!(
+        run.grasps.len() >= 20 && many >= 5,
+        "{many} of {}",
+        run.grasps.len()
+    );
+    let mesh = parry_mesh(&surface, 241, 480);
+    for grasp in run.grasps.iter().take(30) {
+        let poses = object_from_links(&hand, &grasp.object_from_palm, &grasp.joints);
+        for (k, &link) in grasp.links.iter().enumerate() {
+            let distance = link_distance(hand.model(), link, &poses[link], &mesh, 0.01);
+            assert!((grasp.gaps[k] - distance).abs() <= 2e-5 && grasp.gaps[k] < 1e-3);
+            let (point, _) = surface.contact(&grasp.directions[k]);
+            assert!((grasp.contacts[k].position - point).norm() <= 1e-12);
+        }
+    }
+}
+
+#[test]
 fn a_ball_treats_every_direction_alike() {
     let hand = schunk_sdh().unwrap();
     let surface = RadialShape::sphere(4, 0.035).unwrap();

@@ -14,6 +14,10 @@ use crate::quality::{LinearPieces, Quality, in_frame};
 
 /// Points of the surface among which the farthest from the centre is sought.
 const EXTENT_DIRECTIONS: usize = 2_000;
+/// Facets up to this share of Q above Q are linearised: the others are learnt from rejected steps.
+const BAND: f64 = 0.06;
+/// Edges of the pyramids that model round cones.
+const PYRAMID_EDGES: usize = 16;
 /// Facets that are linearised, the weakest first.
 const FACETS: usize = 40;
 
@@ -23,9 +27,47 @@ pub struct Objective {
     convention: Convention,
     centre: Point3<f64>,
     workspace: Workspace,
+    /// For round cones.
+    pyramids: Option<Pyramids>,
     contacts: Vec<Contact>,
     evaluations: usize,
     scratch: Scratch,
+}
+
+/// What stands for round cones in the model of a step: their hull has no facets, and the one face
+/// that the ball touches slides along it as the grasp moves. The facets of inscribed pyramids that
+/// are nearly the nearest show how far, to the 2 per cent that they cut off.
+#[derive(Clone, Debug)]
+struct Pyramids {
+    convention: Convention,
+    workspace: Workspace,
+}
+
+impl Pyramids {
+    /// None for a convention that has pyramids itself.
+    fn of(convention: &Convention) -> Option<Self> {
+        matches!(convention.edges, Edges::Round { .. }).then(|| Self {
+            convention: Convention {
+                edges: Edges::Polygon(PYRAMID_EDGES),
+                ..convention.clone()
+            },
+            workspace: Workspace::following(),
+        })
+    }
+
+    /// The facets near the nearest one; returns the offset of that one.
+    fn near_facets(
+        &mut self,
+        contacts: &[Contact],
+        centre: &Point3<f64>,
+        facets: &mut Vec<ActiveFacet>,
+    ) -> Result<f64, QualityError> {
+        let setup = setup(contacts, centre, &self.convention);
+        let nearest = grasp::margin(&setup, &mut self.workspace)?.value;
+        let band = BAND * nearest.max(0.0) + 1e-3;
+        grasp::near_active_facets(&setup, band, &mut self.workspace, facets)?;
+        Ok(nearest)
+    }
 }
 
 /// What linearisations reuse.
@@ -65,6 +107,7 @@ impl Objective {
             convention.torque_length = TorqueLength::Metres(reach);
         }
         Self {
+            pyramids: Pyramids::of(&convention),
             convention,
             centre,
             workspace: Workspace::following(),
@@ -79,6 +122,7 @@ impl Objective {
     pub fn with_friction(&self, friction: f64) -> Self {
         let mut other = self.clone();
         other.convention.friction = friction;
+        other.pyramids = Pyramids::of(&other.convention);
         other.evaluations = 0;
         other.scratch.last = None;
         other
@@ -104,6 +148,9 @@ impl Objective {
     /// Otherwise a search goes on from the last one ([`Workspace::following`]).
     pub fn forget(&mut self) {
         self.workspace.forget();
+        if let Some(pyramids) = &mut self.pyramids {
+            pyramids.workspace.forget();
+        }
         self.scratch.last = None;
     }
 
@@ -192,22 +239,24 @@ impl<S: Surface> Quality<S> for Objective {
         self.differentiate(surface, contacts);
         let mut facets = std::mem::take(&mut self.scratch.facets);
         facets.clear();
-        // A round cone has no facets but those of its approximation, all of them near one another:
-        // what decides elsewhere is learnt from rejected steps.
-        let polygon = matches!(self.convention.edges, Edges::Polygon(_));
-        if margin.closed && polygon {
-            let band =
-                std::env::var("BAND").map_or(0.25, |b| b.parse().unwrap()) * margin.value + 1e-3;
+        let mut floor = margin.value;
+        if !margin.closed {
+            facets.push(margin.facet);
+        } else if let Some(mut pyramids) = self.pyramids.take() {
+            let found = pyramids.near_facets(&self.contacts, &self.centre, &mut facets);
+            self.pyramids = Some(pyramids);
+            floor = found?;
+            self.chain(contacts, &margin.facet, pieces.push(0.0))?;
+        } else {
+            let band = BAND * margin.value + 1e-3;
             let realised = std::mem::take(&mut self.contacts);
             let found = self.near_active_facets(&realised, band, &mut facets);
             self.contacts = realised;
             found?;
-            facets.truncate(FACETS);
-        } else {
-            facets.push(margin.facet);
         }
+        facets.truncate(FACETS);
         for facet in &facets {
-            self.chain(contacts, facet, pieces.push(facet.offset - margin.value))?;
+            self.chain(contacts, facet, pieces.push(facet.offset - floor))?;
         }
         self.scratch.facets = facets;
         Ok(())
@@ -301,7 +350,12 @@ impl Objective {
         slope: &mut [f64],
     ) -> Result<(), QualityError> {
         let mut gradient = std::mem::take(&mut self.scratch.gradient);
-        let result = self.facet_gradient(&self.contacts, facet, FrameRule::Tangent, &mut gradient);
+        // The pyramids in round cones have no frames of their own.
+        let frame = match self.convention.edges {
+            Edges::Polygon(_) => FrameRule::Tangent,
+            Edges::Round { .. } => FrameRule::Transported,
+        };
+        let result = self.facet_gradient(&self.contacts, facet, frame, &mut gradient);
         if result.is_ok() {
             for (i, at) in self.scratch.slopes.iter().enumerate() {
                 let by_move = at.position_slope.transpose() * gradient.positions[i]

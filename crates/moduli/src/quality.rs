@@ -24,6 +24,12 @@ impl LinearPieces {
         self.slopes.clear();
     }
 
+    /// Forgets all but the first pieces.
+    pub(crate) fn truncate(&mut self, pieces: usize) {
+        self.excess.truncate(pieces);
+        self.slopes.truncate(pieces * self.dimension);
+    }
+
     /// Makes room for pieces of the present dimension.
     pub(crate) fn reserve(&mut self, pieces: usize) {
         self.excess.reserve(pieces);

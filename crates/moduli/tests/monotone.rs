@@ -1,6 +1,6 @@
 //! Our ascent: monotone, pole-free, better than the fixed step.
 
-use grasp::{Convention, FrameRule, Gradient};
+use grasp::{Convention, Edges, FrameRule, Gradient};
 use moduli::point::contacts_on;
 use moduli::sample::{perturbed, uniform_direction};
 use moduli::{MonotoneAscent, Objective, PaperAscent};
@@ -178,5 +178,35 @@ fn our_transfer_is_never_below_the_naive_one() {
         assert!(arrived.quality >= naive.quality);
         assert!(arrived.quality > 0.1, "seed {seed}: {}", arrived.quality);
         assert_eq!(arrived.start_quality, naive.start_quality);
+    }
+}
+
+#[test]
+fn round_cones_are_climbed_as_high_as_pyramids() {
+    let with = |edges| Convention { edges, ..paper() };
+    let round = with(Edges::Round { tolerance: 1e-5 });
+    let many = with(Edges::Polygon(16));
+    for seed in 0..8 {
+        let shape = lumpy(seed);
+        let start = closed_start(&shape, seed + 100);
+        let climb = |convention: &Convention| {
+            let mut objective = Objective::new(convention, &shape, &Point3::origin());
+            MonotoneAscent::default()
+                .climb(&shape, &start, &mut objective, |_| {})
+                .unwrap()
+        };
+        let (a, b) = (climb(&round), climb(&many));
+        // What the pyramids cut off where they ended.
+        let whole = Objective::new(&round, &shape, &Point3::origin())
+            .epsilon(&contacts_on(&shape, &b.contacts))
+            .unwrap();
+        let gap = whole.upper - b.quality;
+        assert!((-1e-12..0.1).contains(&gap));
+        assert!(
+            a.quality >= b.quality - gap,
+            "seed {seed}: {} {}",
+            a.quality,
+            b.quality
+        );
     }
 }

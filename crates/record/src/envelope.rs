@@ -179,7 +179,7 @@ fn checked_body(kind: Kind, bytes: &[u8]) -> Result<&[u8], EnvelopeError> {
 }
 
 /// 64-bit FNV-1a: catches accidents, not attackers.
-fn checksum(bytes: &[u8]) -> u64 {
+pub fn checksum(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
     })

@@ -82,14 +82,16 @@ pub(crate) enum TransferScheme {
 
 #[derive(Debug, Args)]
 pub(crate) struct TransferOptions {
-    /// The shape that the grasps are on.
-    #[arg(long)]
-    pub(crate) from: PathBuf,
-    /// The shape that they are carried to.
-    #[arg(long)]
-    pub(crate) to: PathBuf,
-    /// grasps.json in the frame of the first shape's cloud.
-    pub(crate) grasps: PathBuf,
+    /// The shape that the grasps are on. Several, each with its grasps: from every one to every
+    /// other shape of --to, and -o is a folder, in which an interrupted run goes on.
+    #[arg(long, value_name = "SHAPE", required = true)]
+    pub(crate) from: Vec<PathBuf>,
+    /// The shape that they are carried to; several as with --from.
+    #[arg(long, value_name = "SHAPE", required = true)]
+    pub(crate) to: Vec<PathBuf>,
+    /// grasps.json in the frame of the cloud of the shape they are on; as many as --from.
+    #[arg(required = true)]
+    pub(crate) grasps: Vec<PathBuf>,
     #[arg(long, value_enum, default_value_t = TransferScheme::Ours)]
     pub(crate) scheme: TransferScheme,
     /// Look for better ends even where the first is good; some seven times slower.

@@ -75,7 +75,8 @@ fn measure(
     convention: &Convention,
     path: &Path,
 ) -> Result<Vec<Epsilon>, Failure> {
-    let chunks: Vec<Vec<Epsilon>> = grasps
+    // Of several failures the first is returned, so that threads do not decide which.
+    let chunks: Vec<Result<Vec<Epsilon>, Failure>> = grasps
         .par_chunks(CHUNK)
         .enumerate()
         .map(|(chunk, grasps)| {
@@ -86,7 +87,8 @@ fn measure(
             };
             grasps.iter().enumerate().map(one).collect()
         })
-        .collect::<Result<_, _>>()?;
+        .collect();
+    let chunks: Vec<Vec<Epsilon>> = chunks.into_iter().collect::<Result<_, _>>()?;
     Ok(chunks.concat())
 }
 

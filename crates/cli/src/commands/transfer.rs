@@ -1,5 +1,8 @@
 //! `moduli transfer`: grasps on one object, carried to another.
 
+mod matrix;
+
+use std::path::Path;
 use std::time::Instant;
 
 use moduli::transfer::Transfer;
@@ -33,9 +36,22 @@ enum Scheme {
 }
 
 pub(crate) fn run(options: &TransferOptions, common: &Common) -> Result<(), Failure> {
+    match (&options.from[..], &options.to[..], &options.grasps[..]) {
+        ([from], [to], [grasps]) => one_pair(from, to, grasps, options, common),
+        _ => matrix::run(options, common),
+    }
+}
+
+fn one_pair(
+    from: &Path,
+    to: &Path,
+    path: &Path,
+    options: &TransferOptions,
+    common: &Common,
+) -> Result<(), Failure> {
     let convention = input::convention(&options.moved.convention)?;
-    let (from, to) = (Object::read(&options.from)?, Object::read(&options.to)?);
-    let grasps = from.grasps(&options.grasps)?;
+    let (from, to) = (Object::read(from)?, Object::read(to)?);
+    let grasps = from.grasps(path)?;
     let transfer = Transfer {
         from: &from.surface,
         to: &to.surface,
@@ -49,19 +65,23 @@ pub(crate) fn run(options: &TransferOptions, common: &Common) -> Result<(), Fail
     let source = source(&from, &to);
     let movement = Movement {
         doing: "transferring",
-        scheme: match options.scheme {
-            TransferScheme::Ours => "ours",
-            TransferScheme::Paper => "paper",
-            TransferScheme::Naive => "naive",
-        },
+        scheme: scheme_name(options),
         object: &to,
         objective: &Objective::new(&convention, &to.surface, &to.origin()),
         start,
     };
     movement.run(&grasps, &options.moved, common, |i, placed| {
         carry(options, &scheme, &transfer, &to, placed, &source)
-            .map_err(|e| Failure::input(&options.grasps, format!("grasp {i}: {e}")))
+            .map_err(|e| Failure::input(path, format!("grasp {i}: {e}")))
     })
+}
+
+fn scheme_name(options: &TransferOptions) -> &'static str {
+    match options.scheme {
+        TransferScheme::Ours => "ours",
+        TransferScheme::Paper => "paper",
+        TransferScheme::Naive => "naive",
+    }
 }
 
 fn prepare(options: &TransferOptions, transfer: &Transfer) -> Result<Scheme, TransferError> {

@@ -7,7 +7,7 @@ use std::path::Path;
 use hand::{Hand, HandModel, HandSpec, Severity, check_hand, load_urdf_with_meshes, mesh_vertices};
 use serde::Serialize;
 
-use super::{built_in, is_built_in, spec_path, text};
+use super::{built_in, is_built_in, spec_path, spec_text, text};
 use crate::args::HandOptions;
 use crate::failure::Failure;
 use crate::mesh_folders::MeshFolders;
@@ -58,7 +58,7 @@ pub(crate) fn check(options: &HandOptions) -> Result<Checked, Failure> {
         checked.hand = Some(built_in()?);
     } else {
         let model = model(options, &mut checked);
-        let spec = spec(&spec_path(options), &mut checked);
+        let spec = spec(options, &mut checked);
         if let (Some(model), Some(spec)) = (model, spec) {
             join(options, model, &spec, &mut checked);
         }
@@ -119,8 +119,8 @@ fn model(options: &HandOptions, checked: &mut Checked) -> Option<HandModel> {
     }
 }
 
-fn spec(path: &Path, checked: &mut Checked) -> Option<HandSpec> {
-    let text = match text(path) {
+fn spec(options: &HandOptions, checked: &mut Checked) -> Option<HandSpec> {
+    let text = match spec_text(options) {
         Ok(text) => text,
         Err(failure) => {
             checked.findings.push(bare(failure));
@@ -130,7 +130,7 @@ fn spec(path: &Path, checked: &mut Checked) -> Option<HandSpec> {
     match HandSpec::from_toml(&text) {
         Ok(spec) => Some(spec),
         Err(e) => {
-            checked.error(path, e.to_string().trim_end());
+            checked.error(&spec_path(options), e.to_string().trim_end());
             None
         }
     }

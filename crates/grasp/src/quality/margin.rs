@@ -145,9 +145,14 @@ pub fn near_active_facets(
     taken.clear();
     taken.push(nearest as u32);
     for &at in &near {
-        if !taken
-            .iter()
-            .any(|&t| same_facet(workspace, t as usize, at as usize))
+        let offset = workspace.search.polytope.bound(at as usize);
+        // Simplices of one plane follow one another in the order of offsets.
+        let beside = |t: &&u32| {
+            let before = workspace.search.polytope.bound(**t as usize);
+            offset - before <= ONE_PLANE * workspace.reach()
+        };
+        let mut before = taken.iter().rev().take_while(beside);
+        if !before.any(|&t| same_facet(workspace, t as usize, at as usize))
             && let Some(facet) = simplex_facet(workspace, at as usize)
         {
             taken.push(at);

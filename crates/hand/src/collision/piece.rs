@@ -448,3 +448,32 @@ fn pose(p: &Isometry3<f64>) -> Pose {
 pub(crate) fn direction_or_z(v: &Vector3<f64>) -> UnitVector3<f64> {
     UnitVector3::try_new(*v, 0.0).unwrap_or(Vector3::z_axis())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Beyond edges and corners face planes alone are a third short, and searches that prune by
+    /// them look at a large part of the object's mesh.
+    #[test]
+    fn the_lower_bound_of_a_hull_is_tight_beyond_its_edges() {
+        let corner = |k: usize| {
+            let side = |bit: usize| if k >> bit & 1 == 0 { -0.01 } else { 0.01 };
+            Point3::new(side(0), side(1), 2.0 * side(2))
+        };
+        let placed = LinkGeometry {
+            link_from_geometry: Isometry3::identity(),
+            geometry: Geometry::Hull {
+                points: (0..8).map(corner).collect(),
+            },
+        };
+        let piece = ConvexPiece::new(&placed).unwrap();
+        for direction in sph::direction::even_directions(200) {
+            let p = direction.into_inner() * 0.06;
+            let exact = (p - piece.closest_point(&p)).norm();
+            let bound = piece.distance(&p);
+            assert!(bound.lower <= exact + 1e-12 && exact <= bound.upper + 1e-12);
+            assert!(bound.lower >= 0.93 * exact, "{} of {exact}", bound.lower);
+        }
+    }
+}

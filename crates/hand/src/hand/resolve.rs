@@ -136,7 +136,7 @@ pub(super) fn finger(
         }
         closing.push((driven, ratio));
     }
-    let (moving_links, speed_bounds) = moving_links(model, shapes, &closing);
+    let (moving_links, speed_bounds, joint_speeds) = moving_links(model, shapes, &closing);
     for (&link, name) in tip_links.iter().zip(&spec.tips) {
         let (finger, link_name) = (spec.name.clone(), name.clone());
         if shapes[link].is_empty() {
@@ -158,6 +158,7 @@ pub(super) fn finger(
         closing,
         moving_links,
         speed_bounds,
+        joint_speeds,
     })
 }
 
@@ -179,7 +180,8 @@ pub(super) fn find_driven(model: &HandModel, place: &str, name: &str) -> Result<
         })
 }
 
-/// Links that closing moves, and bounds on the speed of their points.
+/// Links that closing moves, and bounds on the speed of their points, in all and by each of the
+/// closing joints.
 ///
 /// A point of link L moves at most Σ_J |rate_J| · reach(J, L), reach being the length of
 /// the chain from the axis of J to the farthest point of L (1 for a sliding joint).
@@ -187,7 +189,12 @@ fn moving_links(
     model: &HandModel,
     shapes: &[LinkShape],
     closing: &[(usize, f64)],
-) -> (Vec<usize>, Vec<f64>) {
+) -> (Vec<usize>, Vec<f64>, Vec<Vec<f64>>) {
+    let driven_by = |joint: usize| match model.joints[joint].drive {
+        Drive::Fixed => None,
+        Drive::Driven(index) => Some(index),
+        Drive::Mimic { driven, .. } => Some(driven),
+    };
     let rate_of = |joint: usize| match model.joints[joint].drive {
         Drive::Fixed => 0.0,
         Drive::Driven(index) => rate(closing, index),
@@ -197,22 +204,26 @@ fn moving_links(
     };
     let mut links = Vec::new();
     let mut speeds = Vec::new();
+    let mut by_joint = Vec::new();
     for (link, shape) in shapes.iter().enumerate() {
         let mut reach = shape.reach();
-        let mut speed = 0.0;
+        let mut parts = vec![0.0; closing.len()];
         let mut moves = false;
         for joint in model.path_to_root(link) {
             let rate: f64 = rate_of(joint);
-            let joint = &model.joints[joint];
             if rate != 0.0 {
                 moves = true;
-                speed += rate.abs()
-                    * if joint.kind == JointKind::Prismatic {
-                        1.0
-                    } else {
-                        reach
-                    };
+                let arm = if model.joints[joint].kind == JointKind::Prismatic {
+                    1.0
+                } else {
+                    reach
+                };
+                let part = closing.iter().position(|c| Some(c.0) == driven_by(joint));
+                if let Some(part) = part {
+                    parts[part] += rate.abs() * arm;
+                }
             }
+            let joint = &model.joints[joint];
             if joint.kind == JointKind::Prismatic {
                 reach += joint.limits.0.abs().max(joint.limits.1.abs());
             }
@@ -220,10 +231,11 @@ fn moving_links(
         }
         if moves {
             links.push(link);
-            speeds.push(speed);
+            speeds.push(parts.iter().sum());
+            by_joint.push(parts);
         }
     }
-    (links, speeds)
+    (links, speeds, by_joint)
 }
 
 fn rate(closing: &[(usize, f64)], driven: usize) -> f64 {

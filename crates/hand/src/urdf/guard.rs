@@ -40,6 +40,7 @@ pub(super) fn check_text(text: &str) -> Result<(), UrdfError> {
                 }
                 Markup::Open => {
                     let (length, empty) = open_tag(rest, open)?;
+                    vectors(&rest[..length], &rest[length..], open)?;
                     elements += 1;
                     depth += usize::from(!empty);
                     length
@@ -116,6 +117,53 @@ fn open_tag(rest: &str, byte: usize) -> Result<(usize, bool), UrdfError> {
         last = c;
     }
     Err(not_xml(byte, "a tag that never ends"))
+}
+
+/// Attributes that hold vectors, whatever the element; as elements the reader takes them too.
+const VECTORS: [&str; 4] = ["xyz", "rpy", "size", "scale"];
+
+/// Checks that the vectors of a tag, and those in the text of an element of such a name, are
+/// numbers: the reader leaves out entries that are none and takes what remains.
+fn vectors(tag: &str, text: &str, byte: usize) -> Result<(), UrdfError> {
+    let ends = |c: char| c.is_whitespace() || "/>".contains(c);
+    let name = tag[1..].split(ends).next().unwrap_or_default();
+    let content = text.split('<').next().unwrap_or_default();
+    if let Some(&what) = VECTORS.iter().find(|v| **v == name) {
+        numbers(content, what, byte)?;
+    }
+    if !["origin", "axis", "box", "mesh"].contains(&name) {
+        return Ok(());
+    }
+    let mut rest = &tag[1 + name.len()..];
+    // Quotes are balanced and hold no '<', or the tag would not have ended.
+    while let Some(equals) = rest.find('=') {
+        let key = rest[..equals].trim();
+        let after = rest[equals + 1..].trim_start();
+        let Some(quote) = after.chars().next().filter(|c| "\"'".contains(*c)) else {
+            return Err(not_xml(byte, "an attribute without quotes"));
+        };
+        let Some(end) = after[1..].find(quote) else {
+            return Err(not_xml(byte, "an attribute that never ends"));
+        };
+        if let Some(&what) = VECTORS.iter().find(|v| **v == key) {
+            numbers(&after[1..=end], what, byte)?;
+        }
+        rest = &after[end + 2..];
+    }
+    Ok(())
+}
+
+fn numbers(text: &str, what: &'static str, byte: usize) -> Result<(), UrdfError> {
+    let odd = text
+        .split_whitespace()
+        .find(|word| word.parse::<f64>().is_err());
+    odd.map_or(Ok(()), |word| {
+        Err(UrdfError::NotANumber {
+            byte,
+            what,
+            word: word.chars().take(40).collect(),
+        })
+    })
 }
 
 #[cfg(test)]

@@ -17,6 +17,10 @@ const ACCEPT: f64 = 0.1;
 const FIRST_MOVE: f64 = 0.1;
 /// Pieces of rejected steps are added up to this many.
 const MOST_PIECES: usize = 96;
+/// Models of rejected steps have at least this excess for a step of a radian, growing with its square.
+const LOCALITY: f64 = 0.5;
+/// Factor of ρ when they are forgotten.
+const AFTER_FORGETTING: f64 = 0.1;
 /// ρ of the stationarity that is reported.
 const REPORT_RHO: f64 = 0.01;
 
@@ -40,6 +44,8 @@ pub(super) struct Climber<'a, S, Q> {
     walls: Walls,
     bundle: Bundle,
     slope: Vec<f64>,
+    /// Pieces that were linearised here; the others come from rejected steps.
+    own: usize,
 }
 
 impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
@@ -62,6 +68,7 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
             walls: Walls::default(),
             bundle: Bundle::default(),
             slope: Vec::new(),
+            own: 0,
         };
         climber.reserve();
         climber.linearise()?;
@@ -108,6 +115,12 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
                     fresh = false;
                     continue;
                 }
+                // What rejected steps taught may hold only where they ended: less freedom without it.
+                if self.pieces.len() > self.own {
+                    self.pieces.truncate(self.own);
+                    rho *= AFTER_FORGETTING;
+                    continue;
+                }
                 if !self.cross_a_wall(settings.least_gain)? {
                     break;
                 }
@@ -129,9 +142,9 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         Ok(())
     }
 
-    /// The slope that is left here, at one ρ for all grasps. The models of rejected steps count
-    /// too: they bound Q from above as the facets do.
+    /// The slope that is left here, at one ρ for all grasps, by the facets of this place alone.
     pub(super) fn stationarity(&mut self) -> f64 {
+        self.pieces.truncate(self.own);
         self.bundle
             .solve(&self.pieces, &self.limits, REPORT_RHO, f64::INFINITY)
             .slope
@@ -227,6 +240,7 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
     fn linearise(&mut self) -> Result<(), QualityError> {
         self.quality
             .linearise(self.surface, &self.here, &mut self.pieces)?;
+        self.own = self.pieces.len();
         self.walls.around(self.surface, self.quality, &self.here);
         self.limit()
     }
@@ -250,10 +264,12 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
             let carried = carry_back(&self.here[i], &self.there[i], &self.slope[2 * i..]);
             self.slope[2 * i..2 * i + 2].copy_from_slice(&carried);
         }
-        let excess = value - self.value - dot(&self.slope, self.bundle.moves());
-        self.pieces
-            .push(excess.max(0.0))
-            .copy_from_slice(&self.slope);
+        // The quality is not concave: a model that would cut off the present state counts as much as
+        // it misses, and one from far away is no constraint here.
+        let moves = self.bundle.moves();
+        let missed = (value - self.value - dot(&self.slope, moves)).abs();
+        let excess = missed.max(LOCALITY * dot(moves, moves));
+        self.pieces.push(excess).copy_from_slice(&self.slope);
         Ok(())
     }
 

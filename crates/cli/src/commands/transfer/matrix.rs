@@ -1,0 +1,279 @@
+//! Grasps of many objects, each carried to many others, a file for each pair of objects.
+//!
+//! A pair that is done is a file; a run that was interrupted does what is left.
+
+use std::collections::BTreeSet;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use grasp::Convention;
+use moduli::Objective;
+use moduli::transfer::{Transfer, run_jobs};
+use rayon::prelude::*;
+use record::GraspsFile;
+use record::envelope::checksum;
+use serde::Serialize;
+use serde_json::json;
+
+use super::{carry, prepare, scheme_name, source};
+use crate::args::{Common, TransferOptions};
+use crate::delivery::{UNSTABLE_BELOW, move_all};
+use crate::failure::Failure;
+use crate::placed::{Object, Placed};
+use crate::{input, output};
+
+/// A table of all pairs, written when all are done.
+const TABLE: &str = "transfers.json";
+/// The key of a pair's file under which the transfer is described.
+const MADE_BY: &str = "transfer";
+
+/// A shape file, its stem and a checksum of its bytes.
+struct Side {
+    stem: String,
+    object: Object,
+    checksum: u64,
+}
+
+struct Source {
+    side: Side,
+    path: PathBuf,
+    grasps: Vec<Placed>,
+    checksum: u64,
+}
+
+/// One pair of objects and where its grasps go.
+struct Pair<'a> {
+    from: &'a Source,
+    to: &'a Side,
+    file: PathBuf,
+    /// Of everything that decides the result.
+    key: String,
+}
+
+/// What a file of a pair says.
+#[derive(Clone, Serialize)]
+struct PairLine {
+    from: String,
+    to: String,
+    file: String,
+    grasps: usize,
+    unstable: usize,
+    mean_start: f64,
+    mean_final: f64,
+    best: f64,
+}
+
+/// Carries everything, going on where an earlier run into the same folder was interrupted.
+pub(super) fn run(options: &TransferOptions, common: &Common) -> Result<(), Failure> {
+    let start = Instant::now();
+    let Some(folder) = &options.moved.output else {
+        return Err(Failure::usage(
+            "several shapes need a folder for the results: -o DIR",
+        ));
+    };
+    if options.moved.trace.is_some() {
+        return Err(Failure::usage("--trace is for one pair of shapes"));
+    }
+    let convention = input::convention(&options.moved.convention)?;
+    let sources = sources(options)?;
+    let targets = distinct(&options.to)?;
+    let pairs = pairs(&sources, &targets, folder, options, &convention);
+    if pairs.is_empty() {
+        return Err(Failure::usage("--from and --to name the same shape alone"));
+    }
+    let mut lines: Vec<Option<PairLine>> = pairs.iter().map(|pair| pair.done()).collect();
+    let kept = lines.iter().flatten().count();
+    let bar = output::progress(common.quiet, pairs.len(), "transferring pairs");
+    bar.set_position(kept as u64);
+    let one = |pair: &Pair| pair.transfer(options, &convention);
+    let ended = run_jobs(&pairs, &mut lines, one, |_, _| {
+        bar.inc(1);
+        ControlFlow::Continue(())
+    });
+    bar.finish_and_clear();
+    ended.map(|_| ())?;
+    let lines: Vec<PairLine> = lines.into_iter().flatten().collect();
+    output::write_file(&folder.join(TABLE), &output::encode(&lines)?)?;
+    say(&lines, kept, folder, start.elapsed().as_secs_f64(), common)
+}
+
+fn sources(options: &TransferOptions) -> Result<Vec<Source>, Failure> {
+    if options.from.len() != options.grasps.len() {
+        return Err(Failure::usage(format!(
+            "{} shapes --from and {} files of grasps; expected one file for each, in the same order",
+            options.from.len(),
+            options.grasps.len()
+        )));
+    }
+    let sides = distinct(&options.from)?;
+    let read = |(side, path): (Side, &PathBuf)| {
+        Ok(Source {
+            grasps: side.object.grasps(path)?,
+            checksum: checksum(&input::read(path)?),
+            path: path.clone(),
+            side,
+        })
+    };
+    sides.into_iter().zip(&options.grasps).map(read).collect()
+}
+
+/// Shapes by their stems, which name the files of results.
+fn distinct(paths: &[PathBuf]) -> Result<Vec<Side>, Failure> {
+    let mut stems = BTreeSet::new();
+    for path in paths {
+        if !stems.insert(input::stem(path)) {
+            return Err(Failure::usage(format!(
+                "two shapes are named {}; their results would have one name",
+                input::stem(path)
+            )));
+        }
+    }
+    let read = |path: &PathBuf| {
+        Ok(Side {
+            stem: input::stem(path),
+            object: Object::read(path)?,
+            checksum: checksum(&input::read(path)?),
+        })
+    };
+    paths.par_iter().map(read).collect()
+}
+
+/// All pairs of different shapes.
+fn pairs<'a>(
+    sources: &'a [Source],
+    targets: &'a [Side],
+    folder: &Path,
+    options: &TransferOptions,
+    convention: &Convention,
+) -> Vec<Pair<'a>> {
+    let how = format!(
+        "{} {} {} {convention:?}",
+        env!("CARGO_PKG_VERSION"),
+        scheme_name(options),
+        options.thorough
+    );
+    let how = checksum(how.as_bytes());
+    let all = sources
+        .iter()
+        .flat_map(|from| targets.iter().map(move |to| (from, to)));
+    all.filter(|(from, to)| from.side.checksum != to.checksum)
+        .map(|(from, to)| Pair {
+            from,
+            to,
+            file: folder.join(format!("{}-to-{}.json", from.side.stem, to.stem)),
+            key: format!(
+                "{:016x}{:016x}{:016x}{how:016x}",
+                from.side.checksum, to.checksum, from.checksum
+            ),
+        })
+        .collect()
+}
+
+impl Pair<'_> {
+    /// The line of a file that this very transfer has left.
+    fn done(&self) -> Option<PairLine> {
+        let bytes = std::fs::read(&self.file).ok()?;
+        let value: serde_json::Value = serde_json::from_slice(&bytes).ok()?;
+        if value[MADE_BY]["key"] != self.key.as_str() {
+            return None;
+        }
+        Some(self.line(&GraspsFile::from_json(&bytes).ok()?))
+    }
+
+    fn transfer(
+        &self,
+        options: &TransferOptions,
+        convention: &Convention,
+    ) -> Result<PairLine, Failure> {
+        let (from, to) = (&self.from.side.object, &self.to.object);
+        let transfer = Transfer {
+            from: &from.surface,
+            to: &to.surface,
+            convention,
+            object_origin: to.origin(),
+        };
+        let scheme = prepare(options, &transfer).map_err(|e| {
+            Failure::refused(format!("{} to {}: {e}", self.from.side.stem, self.to.stem))
+        })?;
+        let source = source(from, to);
+        let moved = move_all(&self.from.grasps, |i, placed| {
+            carry(options, &scheme, &transfer, to, placed, &source)
+                .map_err(|e| Failure::input(&self.from.path, format!("grasp {i}: {e}")))
+        })?;
+        let objective = Objective::new(convention, &to.surface, &to.origin());
+        let file = to.file(&objective, &moved);
+        let mut value = serde_json::to_value(&file)
+            .map_err(|e| Failure::other(format!("cannot encode the result as JSON: {e}")))?;
+        value[MADE_BY] = json!({
+            "from": self.from.side.stem,
+            "to": self.to.stem,
+            "scheme": scheme_name(options),
+            "key": self.key,
+        });
+        output::write_file(&self.file, &output::encode(&value)?)?;
+        Ok(self.line(&file))
+    }
+
+    fn line(&self, file: &GraspsFile) -> PairLine {
+        let count = file.grasps.len() as f64;
+        let qualities = || file.grasps.iter().map(|g| g.quality);
+        let starts = file.grasps.iter().filter_map(|g| g.source.source_quality);
+        PairLine {
+            from: self.from.side.stem.clone(),
+            to: self.to.stem.clone(),
+            file: self.file.display().to_string(),
+            grasps: file.grasps.len(),
+            unstable: qualities().filter(|q| *q < UNSTABLE_BELOW).count(),
+            mean_start: starts.sum::<f64>() / count,
+            mean_final: qualities().sum::<f64>() / count,
+            best: qualities().fold(0.0, f64::max),
+        }
+    }
+}
+
+fn say(
+    lines: &[PairLine],
+    kept: usize,
+    folder: &Path,
+    seconds: f64,
+    common: &Common,
+) -> Result<(), Failure> {
+    let grasps: usize = lines.iter().map(|l| l.grasps).sum();
+    let unstable: usize = lines.iter().map(|l| l.unstable).sum();
+    let mean = |of: fn(&PairLine) -> f64| {
+        lines.iter().map(|l| of(l) * l.grasps as f64).sum::<f64>() / grasps as f64
+    };
+    let (mean_start, mean_final) = (mean(|l| l.mean_start), mean(|l| l.mean_final));
+    if common.json {
+        output::say_json(&json!({
+            "pairs": lines, "kept_pairs": kept, "grasps": grasps, "unstable": unstable,
+            "mean_start": mean_start, "mean_final": mean_final,
+            "output": folder.display().to_string(), "seconds": seconds,
+        }))?;
+    } else {
+        for line in lines {
+            output::say(format!(
+                "{:24} {:24} {:4} grasps  {:.4} → {:.4}, best {:.4}, {} below 0.01",
+                line.from,
+                line.to,
+                line.grasps,
+                line.mean_start,
+                line.mean_final,
+                line.best,
+                line.unstable
+            ));
+        }
+        output::say(format!(
+            "{} pairs ({kept} done before), {grasps} grasps: mean {mean_start:.4} → {mean_final:.4}, {unstable} below 0.01; {seconds:.2} s\n{}",
+            lines.len(),
+            folder.display()
+        ));
+    }
+    if unstable == grasps {
+        return Err(Failure::refused(format!(
+            "none of {grasps} transferred grasps is stable; more friction (--friction) or other grasps may help"
+        )));
+    }
+    Ok(())
+}

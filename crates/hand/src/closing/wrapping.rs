@@ -1,0 +1,137 @@
+//! Closing a finger past its tip: every joint goes on until a link that it moves touches.
+
+use super::{ClosedHand, ClosingRules, LEAST_STEP, Rejection};
+use crate::collision::{CollisionObject, Gap, Precision};
+use crate::hand::{Finger, Hand};
+
+/// A finger's closing joints on their way.
+struct Wrapping<'a> {
+    object: &'a CollisionObject<'a>,
+    hand: &'a Hand,
+    finger: &'a Finger,
+    rules: &'a ClosingRules,
+    /// Closing joints that still move.
+    active: Vec<bool>,
+}
+
+/// Closes a finger joint by joint, by conservative advancement as with tips alone.
+///
+/// A joint stops at its limit and when any link that it moves has come within the tip gap; a
+/// joint only ever closes. Errors: the finger starts in the object, or none of its links touches.
+pub(super) fn wrap_finger(
+    object: &CollisionObject<'_>,
+    hand: &Hand,
+    index: usize,
+    rules: &ClosingRules,
+    state: &mut ClosedHand,
+) -> Result<(), Rejection> {
+    let finger = &hand.fingers[index];
+    let mut wrapping = Wrapping {
+        object,
+        hand,
+        finger,
+        rules,
+        active: vec![true; finger.closing.len()],
+    };
+    loop {
+        let step = wrapping
+            .free_step(state)
+            .ok_or(Rejection::StartsInObject { finger: index })?;
+        wrapping.stop_at_limits(state);
+        if !wrapping.active.contains(&true) {
+            break;
+        }
+        if step > LEAST_STEP {
+            wrapping.advance(step, state);
+        }
+    }
+    let before = state.touching.len();
+    for &link in &finger.moving_links {
+        let gap = wrapping.gap(link, state);
+        if !hand.shapes[link].is_empty() && wrapping.has_arrived(&gap) {
+            state.touching.push(link);
+        }
+    }
+    if state.touching.len() == before {
+        return Err(Rejection::TipDidNotArrive { finger: index });
+    }
+    Ok(())
+}
+
+impl Wrapping<'_> {
+    /// The step that every link allows; links that have arrived stop their joints. None where a
+    /// link is in the object.
+    fn free_step(&mut self, state: &ClosedHand) -> Option<f64> {
+        // A link is brought to half of the gap, between touching and not having arrived.
+        let aim = 0.5 * self.rules.tip_gap;
+        let mut step = f64::INFINITY;
+        for (k, &link) in self.finger.moving_links.iter().enumerate() {
+            if self.hand.shapes[link].is_empty() || self.speed(k) <= 0.0 {
+                continue;
+            }
+            let gap = self.gap(link, state);
+            if gap.lower <= 0.0 {
+                return None;
+            }
+            let free = (gap.lower - aim) / self.speed(k);
+            if self.has_arrived(&gap) || !(free > LEAST_STEP) {
+                for (active, speed) in self.active.iter_mut().zip(&self.finger.joint_speeds[k]) {
+                    *active &= *speed <= 0.0;
+                }
+            } else {
+                step = step.min(free);
+            }
+        }
+        Some(step)
+    }
+
+    fn gap(&self, link: usize, state: &ClosedHand) -> Gap {
+        let precision = Precision {
+            cutoff: f64::INFINITY,
+            absolute: self.rules.tolerance,
+            relative: 0.1,
+        };
+        let pose = &state.object_from_links[link];
+        self.object
+            .link_gap(&self.hand.shapes[link], pose, precision)
+    }
+
+    fn has_arrived(&self, gap: &Gap) -> bool {
+        gap.upper + self.object.mesh_error() < self.rules.tip_gap
+    }
+
+    /// Bound on the speed of a moving link under the joints that still move.
+    fn speed(&self, link: usize) -> f64 {
+        let parts = self.finger.joint_speeds[link].iter().zip(&self.active);
+        parts.filter(|(_, active)| **active).map(|(s, _)| s).sum()
+    }
+
+    fn limit(&self, joint: usize) -> f64 {
+        let (driven, ratio) = self.finger.closing[joint];
+        let (lower, upper) = self.hand.model.joints[self.hand.model.driven[driven]].limits;
+        if ratio > 0.0 { upper } else { lower }
+    }
+
+    fn stop_at_limits(&mut self, state: &ClosedHand) {
+        for joint in 0..self.active.len() {
+            let (driven, ratio) = self.finger.closing[joint];
+            let left = (self.limit(joint) - state.joints[driven]) / ratio;
+            self.active[joint] &= left > LEAST_STEP;
+        }
+    }
+
+    fn advance(&self, step: f64, state: &mut ClosedHand) {
+        for (joint, &(driven, ratio)) in self.finger.closing.iter().enumerate() {
+            if self.active[joint] {
+                let left = (self.limit(joint) - state.joints[driven]) / ratio;
+                state.joints[driven] += ratio * step.min(left);
+            }
+        }
+        self.hand.model.update_links(
+            &state.joints,
+            self.finger.moving_links.iter().copied(),
+            &mut state.object_from_links,
+        );
+        state.steps += 1;
+    }
+}
