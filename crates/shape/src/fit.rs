@@ -27,7 +27,8 @@ pub const PENALTY_POWER: i32 = 2;
 /// 2 mm of noise still more than 0.2) and a bowl with its thin wall 0.71.
 pub const MOST_MULTIPLE: f64 = 0.2;
 
-/// The same for a cloud with an opening, through which the inside of a wall can be seen.
+/// The same for a cloud with an opening, through which the inside of a wall can be seen. A mug's is
+/// above 0.1 with 2 mm of noise from 12,000 points on, with 1 mm from 5,000.
 pub const MOST_MULTIPLE_OPEN: f64 = 0.1;
 
 /// [`StarShape::unseen`] above which a cloud is refused: a line, a sheet or a handful of points. A
@@ -47,8 +48,10 @@ const EASE: f64 = 0.5;
 /// Fewer points than coefficients resolve degrees up to about this times √N.
 const RESOLVED: f64 = 2.0 / 3.0;
 
-/// A chosen λ is raised until the surface stays below this many times the largest radius seen.
+/// A chosen λ is raised until the surface stays below this many times the largest radius seen,
 const MOST_OVERSHOOT: f64 = 1.25;
+/// and above this part of the least.
+const LEAST_UNDERSHOOT: f64 = 0.25;
 /// By how much, and how often.
 const RAISE: f64 = 10.0;
 const RAISES: usize = 6;
@@ -117,13 +120,14 @@ pub enum FitError {
     },
     /// The surface leaves the data by far, and no penalty tried keeps it close.
     #[error(
-        "the surface reaches {reached:.4} m where the data end at {seen:.4} m; a lower degree or a more complete scan may help"
+        "the surface runs from {:.4} to {:.4} m where the data run from {:.4} to {:.4} m; a lower degree or a more complete scan may help",
+        reached.0, reached.1, seen.0, seen.1,
     )]
     Overshoot {
-        /// Certified upper bound of the radius, metres.
-        reached: f64,
-        /// Largest radius among the points, metres.
-        seen: f64,
+        /// Certified bounds of the radius, metres.
+        reached: (f64, f64),
+        /// Least and largest radius among the points, metres.
+        seen: (f64, f64),
     },
     /// Too few points remain.
     #[error(transparent)]
@@ -291,10 +295,15 @@ impl View {
     }
 
     fn not_too_far(&self, shape: RadialShape, chosen: bool) -> Result<RadialShape, FitError> {
-        let seen = self.samples.radii.iter().fold(0.0_f64, |a, b| a.max(*b));
-        let reached = shape.radius_bounds().1;
-        if chosen && reached > MOST_OVERSHOOT * seen {
-            return Err(FitError::Overshoot { reached, seen });
+        let radii = self.samples.radii.iter();
+        let (least, most) =
+            radii.fold((f64::INFINITY, 0.0_f64), |(a, b), r| (a.min(*r), b.max(*r)));
+        let (lower, upper) = shape.radius_bounds();
+        if chosen && (upper > MOST_OVERSHOOT * most || lower < LEAST_UNDERSHOOT * least) {
+            return Err(FitError::Overshoot {
+                reached: (lower, upper),
+                seen: (least, most),
+            });
         }
         Ok(shape)
     }

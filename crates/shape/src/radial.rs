@@ -201,41 +201,7 @@ impl Surface for RadialShape {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sph::direction::{even_directions, retract, tangent_frame};
-
-    fn pebble() -> RadialShape {
-        let mut beta = Coefficients::constant(8, 0.05);
-        for (i, b) in beta.as_mut_slice().iter_mut().enumerate().skip(1) {
-            *b = 0.004 * (i as f64 * 1.9).sin() / (1.0 + 0.3 * i as f64);
-        }
-        RadialShape::new(beta).unwrap()
-    }
-
-    #[test]
-    fn differential_agrees_with_differences_also_at_the_poles() {
-        let shape = pebble();
-        let mut points = even_directions(40);
-        points.extend([Vector3::z_axis(), -Vector3::z_axis()]);
-        let h = 1e-5;
-        for p in points {
-            let here = shape.differential(&p);
-            let (e1, e2) = tangent_frame(&p);
-            for v in [e1, e2] {
-                let (up, down) = (retract(&p, &(v * h)), retract(&p, &(v * -h)));
-                let ((c1, n1), (c0, n0)) = (shape.contact(&up), shape.contact(&down));
-                let moved = (c1 - c0) / (2.0 * h) - here.position_slope * v;
-                let turned =
-                    (n1.into_inner() - n0.into_inner()) / (2.0 * h) - here.normal_slope * v;
-                assert!(moved.norm() <= 1e-9, "{moved}");
-                assert!(turned.norm() <= 1e-7, "{turned}");
-            }
-            let facing = here.inward_normal.dot(&here.position.coords);
-            assert!(facing < 0.0, "the normal points inward");
-            assert!(
-                (here.position_slope.transpose() * here.inward_normal.into_inner()).norm() <= 1e-15
-            );
-        }
-    }
+    use sph::direction::even_directions;
 
     #[test]
     fn a_radius_that_turns_negative_is_refused() {

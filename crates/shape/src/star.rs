@@ -19,7 +19,7 @@ const TWO_SHEETS: f64 = 0.8;
 /// Each sheet holds at least this share of a cell's points: stray points make no sheet.
 const LEAST_SHARE: f64 = 0.15;
 /// Sheets closer than this part of the radius count as one.
-const LEAST_GAP: f64 = 0.01;
+pub(crate) const LEAST_GAP: f64 = 0.01;
 
 /// A direction along which the surface is met at two radii.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,9 @@
 //!
 //! Where noise is as large as a wall is thick, no direction shows two sheets any more, and a cup looks
 //! like a solid with a part missing. Two things still tell them apart: the shape of the scatter, which
-//! two walls make flatter than a normal distribution, and how the points are spread.
+//! two walls make flatter than a normal distribution, and how the points are spread. What nothing tells
+//! apart is a deep vessel, its wall thinner than some 1.5 deviations of the noise, and a solid that
+//! stands on an unseen side.
 
 use nalgebra::Vector3;
 use sph::Direction;
@@ -11,11 +13,13 @@ use sph::direction::{even_directions, retract, tangent_frame};
 use crate::cells::Cells;
 use crate::patch::{Patch, members};
 use crate::point_cloud::RadialSamples;
+use crate::star::LEAST_GAP;
 
 /// Openings of a smaller share of the sphere than this are holes of a scan.
 pub const LEAST_OPENING: f64 = 0.05;
 /// An opening of a larger share than this is wider than what a scan from all sides leaves below an
-/// object; half a ball, seen from its mean, leaves 0.276.
+/// object on a table, unless that is as flat as a bowl upside down; half a hollow ball, seen from its
+/// mean, has 0.25.
 pub const WIDE_OPENING: f64 = 0.2;
 
 /// Directions tried as the middle of the opening.
@@ -26,8 +30,6 @@ const ASTRAY: usize = 5000;
 /// Points a cell should hold for the shape of their scatter, and for their density.
 const POINTS_PER_SCATTER: usize = 64;
 const POINTS_PER_DENSITY: usize = 24;
-/// Walls closer than this part of the radius count as one; they scatter by half of it.
-const LEAST_GAP: f64 = 0.01;
 /// Mean distance from the mean over standard deviation of a normal distribution, √(2/π), and the
 /// deviation of that ratio for n values, times √n.
 const NORMAL_RATIO: f64 = 0.797_884_560_8;
@@ -129,7 +131,7 @@ fn inner_cells(samples: &RadialSamples, points: usize) -> (Cells, Vec<(usize, Ve
 /// Geary's ratio of the scatter (mean size over standard deviation), pooled over the inner cells.
 ///
 /// Two walls d apart under noise of deviation σ exceed the normal ratio by 0.006 at d = 1.2 σ, by
-/// 0.027 at 2 σ and by 0.11 at 4 σ; edges, steps and stray points stay below it.
+/// 0.027 at 2 σ and by 0.10 at 4 σ; edges, steps and stray points stay below it.
 fn scatter_of_two_walls(samples: &RadialSamples) -> bool {
     let (_, inner) = inner_cells(samples, POINTS_PER_SCATTER);
     let (mut excess, mut count) = (0.0, 0.0);
@@ -140,6 +142,7 @@ fn scatter_of_two_walls(samples: &RadialSamples) -> bool {
         let n = members.len() as f64;
         let variance = patch.rest.iter().map(|e| e * e).sum::<f64>() / n;
         let deviation = variance.sqrt();
+        // Two walls scatter by half the gap.
         let told_apart = deviation >= 0.5 * LEAST_GAP * patch.radius;
         if told_apart && unshared(samples, &members, &patch.rest) >= UNSHARED * variance {
             let size = patch.rest.iter().map(|e| e.abs()).sum::<f64>() / n;

@@ -1,5 +1,8 @@
 //! The space of shapes: convexity, cones, the isometry with coefficients, mass, meshes.
 
+mod common;
+
+use common::{assert_differentials_agree_with_differences, pebble};
 use nalgebra::{Matrix3, Point3, Vector3};
 use proptest::prelude::*;
 use shape::{RadialShape, Surface, TriangleMesh, space};
@@ -45,6 +48,11 @@ fn moments(mesh: &TriangleMesh) -> (f64, Vector3<f64>, Matrix3<f64>) {
         sums.2 += (squares + sum * sum.transpose()) * (volume / 20.0);
     }
     sums
+}
+
+#[test]
+fn differentials_agree_with_differences_also_at_the_poles() {
+    assert_differentials_agree_with_differences(&pebble());
 }
 
 proptest! {

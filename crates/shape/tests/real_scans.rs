@@ -2,22 +2,17 @@
 
 mod common;
 
-use common::{cloud, index, noisy, objects, shuffled};
+use common::{SETTINGS, cloud, index, noisy, objects, shuffled};
 use nalgebra::{DMatrix, DVector, Point3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use shape::fit::{Fit, FitError, FitSettings, fit};
+use shape::fit::{Fit, FitError, fit};
 use shape::point_cloud::RadialSamples;
 use shape::{PointCloud, Surface, star_shape};
 use sph::direction::even_directions;
 use sph::grid::RingGrid;
 use sph::regression::{Penalty, Samples, gram};
 use sph::{Coefficients, Direction, batch};
-
-const SETTINGS: FitSettings = FitSettings {
-    degree: 50,
-    lambda: None,
-};
 
 /// Root mean square of r(pᵢ) − rᵢ.
 fn rms(beta: &Coefficients, samples: &RadialSamples) -> f64 {
@@ -55,7 +50,8 @@ fn assert_sane(name: &str, cloud: &PointCloud, fit: &Fit) {
     let (low, high) = fit.shape.radius_bounds();
     let radii = cloud.seen_from(&fit.centre_in_cloud).radii;
     let largest = radii.iter().fold(0.0_f64, |a, b| a.max(*b));
-    assert!(low > 0.0, "{name}: {low}");
+    let least = radii.iter().fold(f64::INFINITY, |a, b| a.min(*b));
+    assert!(low > 0.0 && low >= 0.25 * least, "{name}: {low} {least}");
     assert!(high <= 1.25 * largest, "{name}: {high} {largest}");
 }
 

@@ -2,12 +2,11 @@
 
 mod common;
 
+use common::{SETTINGS, assert_differentials_agree_with_differences, pebble, with_poles};
 use nalgebra::{Matrix3, Point3, Vector3};
 use proptest::prelude::*;
-use shape::{
-    FitSettings, PointCloud, RadialShape, SphericalError, SphericalShape, Surface, fit_spherical,
-};
-use sph::direction::{even_directions, retract, tangent_frame};
+use shape::{FitSettings, PointCloud, SphericalError, SphericalShape, Surface, fit_spherical};
+use sph::direction::{even_directions, tangent_frame};
 use sph::{Coefficients, Direction};
 
 /// (l, m) = (1, 1), (1, −1), (1, 0): the harmonics along x, y and z.
@@ -45,12 +44,6 @@ fn bent() -> SphericalShape {
     shape(coordinates).unwrap()
 }
 
-fn with_poles() -> Vec<Direction> {
-    let mut all = even_directions(40);
-    all.extend([Vector3::z_axis(), -Vector3::z_axis()]);
-    all
-}
-
 #[test]
 fn an_ellipsoid_has_its_normals_mass_and_bounds() {
     let (a, b, c) = (0.03, 0.05, 0.09);
@@ -79,37 +72,17 @@ fn an_ellipsoid_has_its_normals_mass_and_bounds() {
 #[test]
 fn differentials_agree_with_differences_also_at_the_poles() {
     let shape = bent();
-    let h = 1e-5;
-    for p in with_poles() {
-        let here = shape.differential(&p);
-        let (u, v) = tangent_frame(&p);
-        for w in [u, v] {
-            let (up, down) = (retract(&p, &(w * h)), retract(&p, &(w * -h)));
-            let ((c1, n1), (c0, n0)) = (shape.contact(&up), shape.contact(&down));
-            let moved = (c1 - c0) / (2.0 * h) - here.position_slope * w;
-            let turned = (n1.into_inner() - n0.into_inner()) / (2.0 * h) - here.normal_slope * w;
-            assert!(moved.norm() <= 1e-9, "{moved}");
-            assert!(turned.norm() <= 1e-7, "{turned}");
-        }
-        assert!((here.position_slope * p.into_inner()).norm() <= 1e-15);
-        assert!((here.normal_slope * p.into_inner()).norm() <= 1e-13);
-        let flat = here.position_slope.transpose() * here.inward_normal.into_inner();
-        assert!(flat.norm() <= 1e-15);
+    assert_differentials_agree_with_differences(&shape);
+    for p in even_directions(200) {
         // The bound holds where nobody looked.
-        let area = (here.position_slope * u)
-            .cross(&(here.position_slope * v))
-            .norm();
+        let area = area_element(&|p| shape.differential(p).position_slope, &p);
         assert!(area >= shape.immersion().lower);
     }
 }
 
 #[test]
 fn a_radial_shape_is_the_same_surface_in_both_spaces() {
-    let mut beta = Coefficients::constant(8, 0.05);
-    for (i, b) in beta.as_mut_slice().iter_mut().enumerate().skip(1) {
-        *b = 0.004 * (i as f64 * 1.9).sin() / (1.0 + 0.3 * i as f64);
-    }
-    let radial = RadialShape::new(beta).unwrap();
+    let radial = pebble();
     let spherical = SphericalShape::from_radial(&radial).unwrap();
     assert_eq!(spherical.degree(), 9);
     for p in with_poles() {
@@ -141,11 +114,7 @@ fn real_shapes_of_degree_50_are_proved_immersions() {
         let Some(cloud) = common::cloud(name) else {
             return;
         };
-        let settings = FitSettings {
-            degree: 50,
-            lambda: None,
-        };
-        let fit = shape::fit::fit(&cloud, &settings).unwrap();
+        let fit = shape::fit::fit(&cloud, &SETTINGS).unwrap();
         let radial = fit.shape;
         let spherical = SphericalShape::from_radial(&radial).unwrap();
         let proof = spherical.immersion();

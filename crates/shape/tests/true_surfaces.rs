@@ -1,5 +1,8 @@
 //! Fits of scans whose true surface is known: the chosen penalty is the right one for it.
 
+mod common;
+
+use common::SETTINGS;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use shape::PointCloud;
@@ -14,7 +17,7 @@ fn ten_times_more_or_less_penalty_is_no_nearer_to_the_truth() {
         let truth = object.sample(8_000, &catalogue::ScanNoise::NONE, &mut rng);
         let truth = PointCloud::new(truth).unwrap();
         let fitted = |lambda| {
-            let settings = FitSettings { degree: 50, lambda };
+            let settings = FitSettings { lambda, ..SETTINGS };
             let fit = fit(&scan, &settings).unwrap();
             let samples = truth.seen_from(&fit.centre_in_cloud);
             let radii = fit.shape.radii(&samples.directions);

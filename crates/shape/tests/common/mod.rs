@@ -1,4 +1,4 @@
-//! The folder of real objects that tests read.
+//! What several tests share: real objects, settings, shapes, and what holds for every surface.
 #![allow(dead_code, unreachable_pub, clippy::print_stderr)]
 
 use std::path::PathBuf;
@@ -8,7 +8,15 @@ use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
-use shape::PointCloud;
+use shape::{FitSettings, PointCloud, RadialShape, Surface};
+use sph::direction::{even_directions, retract, tangent_frame};
+use sph::{Coefficients, Direction};
+
+/// The paper's degree, and the penalty that the data ask for.
+pub const SETTINGS: FitSettings = FitSettings {
+    degree: 50,
+    lambda: None,
+};
 
 /// One line of `objects/index.tsv`.
 pub struct Entry {
@@ -81,4 +89,42 @@ pub fn thinned(cloud: &PointCloud, count: usize) -> PointCloud {
     let mut points = shuffled(cloud, 1);
     points.truncate(count);
     PointCloud::new(points).unwrap()
+}
+
+/// A smooth shape of degree 8, some 5 cm in radius.
+pub fn pebble() -> RadialShape {
+    let mut beta = Coefficients::constant(8, 0.05);
+    for (i, b) in beta.as_mut_slice().iter_mut().enumerate().skip(1) {
+        *b = 0.004 * (i as f64 * 1.9).sin() / (1.0 + 0.3 * i as f64);
+    }
+    RadialShape::new(beta).unwrap()
+}
+
+/// Directions all over the sphere, the poles among them.
+pub fn with_poles() -> Vec<Direction> {
+    let mut all = even_directions(40);
+    all.extend([Vector3::z_axis(), -Vector3::z_axis()]);
+    all
+}
+
+/// df and dn agree with central differences, have p in their kernel, and df is tangent.
+pub fn assert_differentials_agree_with_differences(shape: &impl Surface) {
+    let h = 1e-5;
+    for p in with_poles() {
+        let here = shape.differential(&p);
+        let (u, v) = tangent_frame(&p);
+        for w in [u, v] {
+            let (up, down) = (retract(&p, &(w * h)), retract(&p, &(w * -h)));
+            let ((c1, n1), (c0, n0)) = (shape.contact(&up), shape.contact(&down));
+            let moved = (c1 - c0) / (2.0 * h) - here.position_slope * w;
+            let turned = (n1.into_inner() - n0.into_inner()) / (2.0 * h) - here.normal_slope * w;
+            assert!(moved.norm() <= 1e-9, "{moved}");
+            assert!(turned.norm() <= 1e-7, "{turned}");
+        }
+        assert!((here.position_slope * p.into_inner()).norm() <= 1e-15);
+        assert!((here.normal_slope * p.into_inner()).norm() <= 1e-13);
+        let flat = here.position_slope.transpose() * here.inward_normal.into_inner();
+        assert!(flat.norm() <= 1e-15);
+        assert!(here.inward_normal.dot(&p) < 0.0, "the normal points inward");
+    }
 }
