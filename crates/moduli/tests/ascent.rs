@@ -33,7 +33,7 @@ fn paper() -> Convention {
 /// Quality that no choice of frame changes.
 fn round() -> Convention {
     Convention {
-        edges: Edges::Round { tolerance: 1e-6 },
+        edges: Edges::Round { tolerance: 1e-9 },
         ..paper()
     }
 }
