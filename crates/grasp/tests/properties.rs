@@ -257,8 +257,8 @@ proptest! {
             prop_assert!(index > 0 || facet.offset <= found.upper + 1e-9);
             let foot: grasp::Wrench = facet.carriers().iter().map(|c| c.wrench * c.weight).sum();
             prop_assert!((foot - facet.normal * facet.offset).norm() <= 1e-6);
-            // Every carrier lies on the plane, and no point of a cone rises above it by more than
-            // the interval allows.
+            // Every carrier lies on the plane, and of the others no point of a cone rises above it by
+            // more than the convention's tolerance.
             for carrier in facet.carriers() {
                 prop_assert!((carrier.wrench.dot(&facet.normal) - facet.offset).abs() <= 1e-6);
             }
@@ -266,7 +266,9 @@ proptest! {
                 .iter()
                 .map(|c| support(c, &facet.normal, 0.9))
                 .fold(f64::NEG_INFINITY, f64::max);
-            prop_assert!(highest >= facet.offset - 1e-9 && highest <= facet.offset + 1.1e-2, "{highest} {}", facet.offset);
+            prop_assert!(highest >= facet.offset - 1e-9);
+            // The first one's plane bounds the interval from below; the others are finished.
+            prop_assert!(index == 0 || highest <= facet.offset + 1e-2 + 1e-9, "{highest} {}", facet.offset);
         }
     }
 
