@@ -2,9 +2,9 @@
 
 use grasp::{
     ActiveFacet, CentreRule, Contact, Convention, Edges, Epsilon, FrameRule, Gradient, Margin,
-    QualityError, Setup, TorqueLength, Workspace,
+    QualityError, Setup, TangentRule, TorqueLength, Workspace,
 };
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use shape::{Differential, Surface};
 use sph::Direction;
 use sph::direction::even_directions;
@@ -16,8 +16,10 @@ use crate::quality::{LinearPieces, Quality, in_frame};
 const EXTENT_DIRECTIONS: usize = 2_000;
 /// Facets up to this share of Q above Q are linearised: the others are learnt from rejected steps.
 const BAND: f64 = 0.06;
+/// A facet with a weight below this has the foot of its plane far outside.
+const FAR_FROM_FOOT: f64 = -0.3;
 /// Edges of the pyramids that model round cones.
-const PYRAMID_EDGES: usize = 16;
+const PYRAMID_EDGES: usize = 24;
 /// Facets that are linearised, the weakest first.
 const FACETS: usize = 40;
 
@@ -36,7 +38,7 @@ pub struct Objective {
 
 /// What stands for round cones in the model of a step: their hull has no facets, and the one face
 /// that the ball touches slides along it as the grasp moves. The facets of inscribed pyramids that
-/// are nearly the nearest show how far, to the 2 per cent that they cut off.
+/// are nearly the nearest show how far, to the 1 per cent that they cut off.
 #[derive(Clone, Debug)]
 struct Pyramids {
     convention: Convention,
@@ -62,10 +64,23 @@ impl Pyramids {
         centre: &Point3<f64>,
         facets: &mut Vec<ActiveFacet>,
     ) -> Result<f64, QualityError> {
+        // Edges that turn with the grasp: no direction of space is preferred.
+        let along = contacts
+            .iter()
+            .enumerate()
+            .fold(Vector3::zeros(), |sum, (k, c)| {
+                sum + (c.position - contacts[0].position) * k as f64
+            });
+        self.convention.tangent = match along.try_normalize(0.0) {
+            Some(axis) => TangentRule::Projected(axis),
+            None => TangentRule::LeastAligned,
+        };
         let setup = setup(contacts, centre, &self.convention);
         let nearest = grasp::margin(&setup, &mut self.workspace)?.value;
         let band = BAND * nearest.max(0.0) + 1e-3;
         grasp::near_active_facets(&setup, band, &mut self.workspace, facets)?;
+        // Whether a facet far from its own foot is found depends on the way of the search.
+        facets.retain(|f| f.carriers().iter().all(|c| c.weight >= FAR_FROM_FOOT));
         Ok(nearest)
     }
 }

@@ -13,6 +13,7 @@ use shape::space::SpaceError;
 use sph::Direction;
 
 use crate::ascent::{Ascent, PaperAscent, Step};
+use crate::constraints::ConstraintError;
 use crate::objective::Objective;
 
 /// Why a transfer has no end.
@@ -24,6 +25,9 @@ pub enum TransferError {
     /// The shapes could not be combined.
     #[error(transparent)]
     Deformation(#[from] SpaceError),
+    /// Nothing on the target keeps the limits, or they are no numbers.
+    #[error(transparent)]
+    Constraints(#[from] ConstraintError),
     /// A job names an object or a grasp that is not there.
     #[error("no transfer of grasp {} from object {} to object {}", job.grasp, job.from, job.to)]
     Job {

@@ -147,20 +147,41 @@ pub fn near_active_facets(
     for &at in &near {
         let offset = workspace.search.polytope.bound(at as usize);
         // Simplices of one plane follow one another in the order of offsets.
-        let beside = |t: &&u32| {
-            let before = workspace.search.polytope.bound(**t as usize);
+        let beside = |t: &u32| {
+            let before = workspace.search.polytope.bound(*t as usize);
             offset - before <= ONE_PLANE * workspace.reach()
         };
-        let mut before = taken.iter().rev().take_while(beside);
-        if !before.any(|&t| same_facet(workspace, t as usize, at as usize))
-            && let Some(facet) = simplex_facet(workspace, at as usize)
-        {
-            taken.push(at);
-            out.push(facet);
+        let mut before = taken
+            .iter()
+            .enumerate()
+            .rev()
+            .take_while(|(_, t)| beside(t));
+        let same = before.find(|(_, t)| same_facet(workspace, **t as usize, at as usize));
+        match same.map(|(place, _)| place) {
+            Some(place) if holds_its_foot(&out[place]) => {}
+            Some(place) => {
+                // Of one facet's simplices the one that holds the foot, if any does.
+                if let Some(facet) = simplex_facet(workspace, at as usize)
+                    && holds_its_foot(&facet)
+                {
+                    out[place] = facet;
+                }
+            }
+            None => {
+                if let Some(facet) = simplex_facet(workspace, at as usize) {
+                    taken.push(at);
+                    out.push(facet);
+                }
+            }
         }
     }
     (workspace.near, workspace.taken) = (near, taken);
     Ok(())
+}
+
+/// Whether the point of a facet's plane nearest to the origin lies in the facet.
+fn holds_its_foot(facet: &ActiveFacet) -> bool {
+    facet.carriers().iter().all(|c| c.weight >= -1e-9)
 }
 
 /// Normals nearer than this belong to one plane.

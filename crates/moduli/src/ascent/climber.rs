@@ -98,6 +98,7 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         let mut rho = FIRST_MOVE / self.steepest().max(f64::MIN_POSITIVE);
         let mut fresh = true;
         let mut refused = false;
+        let mut retried = false;
         for _ in 0..settings.steps {
             if !(self.steepest() > settings.stationarity && self.value < enough) {
                 break;
@@ -121,15 +122,22 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
                     rho *= AFTER_FORGETTING;
                     continue;
                 }
-                if !self.cross_a_wall(settings.least_gain)? {
+                if retried && !self.cross_a_wall(settings.least_gain)? {
                     break;
                 }
+                // A climb that began here would look around as far as this.
+                if !retried {
+                    self.walls.fall();
+                    self.limit()?;
+                }
+                retried = !retried;
                 rho = FIRST_MOVE / self.steepest().max(f64::MIN_POSITIVE);
                 (fresh, refused) = (true, false);
                 continue;
             }
             let outcome = self.try_step(&step)?;
             fresh = matches!(outcome, Outcome::Taken(_));
+            retried &= !fresh;
             refused = !fresh;
             rho *= match outcome {
                 Outcome::Taken(k) | Outcome::Refused(k) if k > 0.75 => 2.0,

@@ -61,6 +61,11 @@ impl Walls {
         self.all.len()
     }
 
+    /// None stands any more.
+    pub(super) fn fall(&mut self) {
+        self.standing.fill(false);
+    }
+
     /// None stands any more if one lies between two states.
     pub(super) fn leave<S>(
         &mut self,
@@ -71,7 +76,7 @@ impl Walls {
     ) {
         quality.walls(surface, here, there, &mut self.there);
         if (0..self.there.len()).any(|wall| self.there.get(wall).0 < 0.0) {
-            self.standing.fill(false);
+            self.fall();
         }
     }
 

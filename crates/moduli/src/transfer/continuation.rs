@@ -6,7 +6,9 @@ use sph::Direction;
 use sph::direction::angle;
 
 use super::{StillOpen, Transfer, TransferError, Transferred, parameter, stations};
-use crate::ascent::{Ascent, MonotoneAscent, Step};
+use crate::ascent::{Ascent, AscentError, MonotoneAscent, Step};
+use crate::constraints::{ConstraintError, Constraints};
+use crate::objective::Objective;
 use crate::quality::Quality;
 use crate::scatter::nearby;
 
@@ -123,7 +125,25 @@ impl Continuation {
         self.carry_by(transfer, stations, contacts, quality_on, trace)
     }
 
-    /// The same for any quality; `quality_on` prepares it on a station.
+    /// The same within hard limits, kept on every station and by everything that recovery tries.
+    ///
+    /// The start is first moved inside them on the source, and its quality is that of the moved one. A
+    /// station on which nothing near keeps them is passed without a climb; where that is so on the
+    /// target there is an error. [`Constraints::closed_under`] is resolved anew on every station, but
+    /// keeps its torque length.
+    pub fn carry_within(
+        &self,
+        transfer: &Transfer,
+        stations: &[RadialField],
+        contacts: &[Direction],
+        constraints: &Constraints,
+        trace: impl FnMut(f64, &Step),
+    ) -> Result<Transferred, TransferError> {
+        let quality_on = |station: &RadialField| transfer.objective(station);
+        self.carry_inside(transfer, stations, contacts, constraints, quality_on, trace)
+    }
+
+    /// [`Continuation::carry`] for any quality; `quality_on` prepares it on a station.
     ///
     /// The convention of `transfer` is not used.
     pub fn carry_by<Q: Quality<RadialField>>(
@@ -132,9 +152,25 @@ impl Continuation {
         stations: &[RadialField],
         contacts: &[Direction],
         quality_on: impl FnMut(&RadialField) -> Q,
+        trace: impl FnMut(f64, &Step),
+    ) -> Result<Transferred, TransferError> {
+        let free = Constraints::default();
+        self.carry_inside(transfer, stations, contacts, &free, quality_on, trace)
+    }
+
+    fn carry_inside<Q: Quality<RadialField>>(
+        &self,
+        transfer: &Transfer,
+        stations: &[RadialField],
+        contacts: &[Direction],
+        constraints: &Constraints,
+        quality_on: impl FnMut(&RadialField) -> Q,
         mut trace: impl FnMut(f64, &Step),
     ) -> Result<Transferred, TransferError> {
+        constraints.validate()?;
         let mut carrier = Carrier {
+            constraints,
+            kept_out: None,
             scheme: self,
             transfer,
             target: stations.last().unwrap_or(transfer.to),
@@ -164,6 +200,12 @@ impl Continuation {
                 }
             }
         }
+        if let Some(error) = carrier
+            .kept_out
+            .filter(|_| best.margin == f64::NEG_INFINITY)
+        {
+            return Err(error.into());
+        }
         Ok(Transferred {
             start_quality,
             quality: best.quality,
@@ -188,6 +230,9 @@ const LAST_RESTARTS: usize = 16;
 struct Carrier<'a, F> {
     scheme: &'a Continuation,
     transfer: &'a Transfer<'a>,
+    constraints: &'a Constraints,
+    /// Why a climb had no start within them.
+    kept_out: Option<ConstraintError>,
     target: &'a RadialField,
     quality_on: F,
     evaluations: usize,
@@ -282,7 +327,10 @@ impl<Q: Quality<RadialField>, F: FnMut(&RadialField) -> Q> Carrier<'_, F> {
         let mut starts = Vec::with_capacity(recovery.probes);
         for k in 0..recovery.probes {
             let middle = if k % 3 == 2 { &best.contacts } else { contacts };
-            let start = nearby(middle, k, recovery.spread);
+            let scattered = nearby(middle, k, recovery.spread);
+            let Ok(start) = self.constraints.repair(self.target, &scattered) else {
+                continue;
+            };
             starts.push((quality.value(self.target, &start)?, start));
         }
         self.evaluations += quality.evaluations();
@@ -314,9 +362,7 @@ impl<Q: Quality<RadialField>, F: FnMut(&RadialField) -> Q> Carrier<'_, F> {
             restarts: LAST_RESTARTS,
             ..self.scheme.at_end
         };
-        let mut quality = (self.quality_on)(self.target);
-        let end = patient.climb(self.target, contacts, &mut quality, |_| {})?;
-        self.evaluations += end.evaluations;
+        let end = self.climb_by(&patient, self.target, contacts, &mut |_| {})?;
         self.climbs += 1 + LAST_RESTARTS;
         if end.margin > best.margin {
             *best = end;
@@ -337,10 +383,46 @@ impl<Q: Quality<RadialField>, F: FnMut(&RadialField) -> Q> Carrier<'_, F> {
             self.climbs += 1;
             self.scheme.at_end
         };
+        self.climb_by(&settings, station, from, &mut |step| trace(t, step))
+    }
+
+    /// A climb within the limits; from where there are none it ends at once, worse than anything.
+    fn climb_by(
+        &mut self,
+        settings: &MonotoneAscent,
+        station: &RadialField,
+        from: &[Direction],
+        trace: &mut impl FnMut(&Step),
+    ) -> Result<Ascent, QualityError> {
         let mut quality = (self.quality_on)(station);
-        let ascent = settings.climb(station, from, &mut quality, |step| trace(t, step))?;
+        let limits = self.constraints_on(station);
+        let ascent = match settings.climb_within(station, from, &mut quality, &limits, trace) {
+            Ok(ascent) => ascent,
+            Err(AscentError::Quality(error)) => return Err(error),
+            Err(AscentError::Constraints(error)) => {
+                self.kept_out = Some(error);
+                Ascent {
+                    contacts: from.to_vec(),
+                    start_quality: 0.0,
+                    quality: 0.0,
+                    margin: f64::NEG_INFINITY,
+                    stationarity: 0.0,
+                    evaluations: quality.evaluations(),
+                }
+            }
+        };
         self.evaluations += ascent.evaluations;
         Ok(ascent)
+    }
+
+    /// The limits, with the second objective on a station.
+    fn constraints_on(&self, station: &RadialField) -> Constraints {
+        let origin = &self.transfer.object_origin;
+        let second = self.constraints.closed_under.as_ref();
+        Constraints {
+            closed_under: second.map(|o| Objective::new(o.convention(), station, origin)),
+            ..self.constraints.clone()
+        }
     }
 }
 
