@@ -1,9 +1,11 @@
-//! The layer `hand`: preparing an object, and closing the SDH from 100 poses.
+//! The layer `hand`: preparing an object, closing the SDH from 100 poses (on the tips, and past
+//! them), and finding a hand at given contacts.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use grasp::Convention;
 use hand::{
-    ClosingRules, CollisionObject, PoseSampling, SynthesisParams, evaluate_pose, schunk_sdh,
+    ClosingRules, CollisionObject, HandState, Outcome, PoseSampling, ReachParams, Reacher,
+    SynthesisParams, evaluate_pose, schunk_sdh,
 };
 use nalgebra::Point3;
 use rand_chacha::ChaCha8Rng;
@@ -46,6 +48,38 @@ fn hand_layer(criterion: &mut Criterion) {
                 .iter()
                 .filter_map(|pose| evaluate_pose(&object, &hand, pose, &params).ok())
                 .count()
+        });
+    });
+    let mut past_tips = params.clone();
+    past_tips.rules.past_tips = true;
+    group.bench_function("100_poses_past_tips", |b| {
+        b.iter(|| {
+            poses
+                .iter()
+                .filter_map(|pose| evaluate_pose(&object, &hand, pose, &past_tips).ok())
+                .count()
+        });
+    });
+    let made = poses
+        .iter()
+        .find_map(|pose| match evaluate_pose(&object, &hand, pose, &params) {
+            Ok(Outcome::Stable(grasp)) => Some(grasp),
+            _ => None,
+        })
+        .expect("a grasp");
+    let reacher = Reacher::new(&object, &hand);
+    let known = [HandState {
+        object_from_palm: made.object_from_palm,
+        joints: made.joints.clone(),
+    }];
+    let reach = ReachParams::default();
+    group.bench_function("reach_from_known", |b| {
+        b.iter(|| reacher.reach(&made.contacts, &reach, &known, &mut rng));
+    });
+    group.bench_function("reach_from_nothing", |b| {
+        b.iter(|| {
+            let mut rng = ChaCha8Rng::seed_from_u64(2);
+            reacher.reach(&made.contacts, &reach, &[], &mut rng)
         });
     });
     group.finish();

@@ -9,17 +9,16 @@ const DEPTH: f64 = 0.03;
 /// The motion with the least sum of squared distances of `motion * from` and `to` (Kabsch 1976).
 pub(crate) fn align(pairs: &[(Point3<f64>, Point3<f64>)]) -> Isometry3<f64> {
     let count = pairs.len().max(1) as f64;
-    let mean = |pick: fn(&(Point3<f64>, Point3<f64>)) -> Vector3<f64>| {
-        pairs.iter().map(pick).sum::<Vector3<f64>>() / count
-    };
-    let (from, to) = (mean(|p| p.0.coords), mean(|p| p.1.coords));
+    let from = pairs.iter().map(|p| p.0.coords).sum::<Vector3<f64>>() / count;
+    let to = pairs.iter().map(|p| p.1.coords).sum::<Vector3<f64>>() / count;
     let mut covariance = Matrix3::zeros();
     for (p, q) in pairs {
         covariance += (q.coords - to) * (p.coords - from).transpose();
     }
-    let svd = covariance.svd(true, true);
-    let rotation = match (svd.u, svd.v_t) {
-        (Some(u), Some(v_t)) => {
+    // Not a number in, and the iteration would have no end of its own.
+    let svd = covariance.try_svd(true, true, f64::EPSILON, 200);
+    let rotation = match svd.map(|svd| (svd.u, svd.v_t)) {
+        Some((Some(u), Some(v_t))) => {
             let mut signs = Matrix3::identity();
             signs[(2, 2)] = (u * v_t).determinant().signum();
             u * signs * v_t

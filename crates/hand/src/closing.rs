@@ -95,7 +95,9 @@ pub struct ClosedHand {
 ///
 /// Each step is the distance still free divided by a bound on the speed of the moving
 /// points (conservative advancement), so no part passes into the surface. Fingers stop
-/// one by one, each on its own. Errors: the first rule broken.
+/// one by one, each on its own. How they pass each other on the way depends on when each
+/// motor runs, which nobody has said, so their distance is tested where they end. Errors: the
+/// first rule broken.
 pub fn close_hand(
     object: &CollisionObject<'_>,
     hand: &Hand,

@@ -181,7 +181,7 @@ impl<'a> Reacher<'a> {
             };
             let fit = problem.solve(&mut x, &task);
             best_fit = best_fit.min(fit);
-            if fit > PROMISING {
+            if !(fit <= PROMISING) {
                 continue;
             }
             if let Some(found) = problem.close(&x, &task, number) {

@@ -286,27 +286,22 @@ fn geometry(
 }
 
 fn number(item: &str, what: &'static str, value: f64) -> Result<f64, UrdfError> {
-    if value.abs() <= MAX_LENGTH_M * 1e3 {
-        Ok(value)
-    } else {
-        Err(UrdfError::Number {
-            item: item.to_string(),
-            what,
-            value,
-        })
-    }
+    checked(item, what, value, value.abs() <= MAX_LENGTH_M * 1e3)
 }
 
 fn positive(item: &str, what: &'static str, value: f64) -> Result<f64, UrdfError> {
-    if value > 0.0 && value <= MAX_LENGTH_M {
-        Ok(value)
-    } else {
-        Err(UrdfError::Number {
-            item: item.to_string(),
-            what,
-            value,
-        })
+    checked(item, what, value, value > 0.0 && value <= MAX_LENGTH_M)
+}
+
+fn checked(item: &str, what: &'static str, value: f64, good: bool) -> Result<f64, UrdfError> {
+    if good {
+        return Ok(value);
     }
+    Err(UrdfError::Number {
+        item: item.to_string(),
+        what,
+        value,
+    })
 }
 
 fn vector(item: &str, what: &'static str, v: &[f64; 3]) -> Result<Vector3<f64>, UrdfError> {
@@ -320,13 +315,7 @@ fn vector(item: &str, what: &'static str, v: &[f64; 3]) -> Result<Vector3<f64>, 
 fn isometry(item: &str, origin: &urdf_rs::Pose) -> Result<Isometry3<f64>, UrdfError> {
     let xyz = vector(item, "origin xyz", &origin.xyz.0)?;
     for &value in xyz.iter() {
-        if value.abs() > MAX_LENGTH_M {
-            return Err(UrdfError::Number {
-                item: item.to_string(),
-                what: "origin xyz",
-                value,
-            });
-        }
+        checked(item, "origin xyz", value, value.abs() <= MAX_LENGTH_M)?;
     }
     let rpy = vector(item, "origin rpy", &origin.rpy.0)?;
     Ok(Isometry3::from_parts(

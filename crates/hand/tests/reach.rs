@@ -3,7 +3,10 @@
 mod common;
 
 use common::{egg, link_distance, lump, object_from_links, paper_params, parry_mesh, seeded};
-use hand::{CollisionObject, ReachOutcome, ReachParams, reach_contacts, schunk_sdh, synthesize};
+use hand::{
+    CollisionObject, HandState, ImproveParams, ReachOutcome, ReachParams, Reacher, carried_pose,
+    reach_contacts, schunk_sdh, synthesize,
+};
 use shape::RadialShape;
 
 #[test]
@@ -46,6 +49,91 @@ fn contacts_that_the_hand_made_once_are_reached_again() {
         tried == 12 && 4 * reached >= 3 * tried,
         "{reached} of {tried}"
     );
+}
+
+#[test]
+fn a_hand_that_is_known_is_found_at_the_first_start() {
+    let hand = schunk_sdh().unwrap();
+    let surface = egg(0.035, 0.3);
+    let object = CollisionObject::new(&surface).unwrap();
+    let reacher = Reacher::new(&object, &hand);
+    let run = synthesize(&surface, &hand, &paper_params(&hand, 40), &mut seeded(2)).unwrap();
+    let params = ReachParams {
+        starts: 0,
+        ..ReachParams::default()
+    };
+    assert!(run.grasps.len() >= 8);
+    for grasp in run.grasps.iter().take(8) {
+        let same = carried_pose(&grasp.object_from_palm, &grasp.contacts, &grasp.contacts);
+        let known = HandState {
+            object_from_palm: same,
+            joints: grasp.joints.clone(),
+        };
+        let outcome = reacher.reach(&grasp.contacts, &params, &[known], &mut seeded(0));
+        let ReachOutcome::Reached(found) = outcome else {
+            panic!("not reached: {outcome:?}");
+        };
+        assert!(found.starts == 1 && found.position_error <= 1e-3);
+    }
+}
+
+#[test]
+fn an_improved_hand_keeps_the_rules_and_never_loses_quality() {
+    let hand = schunk_sdh().unwrap();
+    let surface = lump(0.035, &[0.1, -0.1, 0.1, 0.15, -0.1, 0.06]);
+    let object = CollisionObject::new(&surface).unwrap();
+    let reacher = Reacher::new(&object, &hand);
+    let mesh = parry_mesh(&surface, 241, 480);
+    let setup = paper_params(&hand, 60);
+    let run = synthesize(&surface, &hand, &setup, &mut seeded(2)).unwrap();
+    // Exactly is never reached, so that whatever is found is only near.
+    let params = ReachParams {
+        starts: 6,
+        tolerance: 0.0,
+        ..ReachParams::default()
+    };
+    let improve = ImproveParams {
+        trials: 25,
+        spread: 4e-3,
+        convention: setup.convention.clone(),
+        centre: setup.centre,
+    };
+    let mut gained = 0;
+    for grasp in run.grasps.iter().rev().take(5) {
+        let wanted = &grasp.contacts;
+        let outcome = reacher.reach(wanted, &params, &[], &mut seeded(1));
+        let ReachOutcome::Near(near) = outcome else {
+            continue;
+        };
+        let better = |seed| {
+            let near = near.clone();
+            let found = reacher.improve(wanted, near, &params, &improve, &mut seeded(seed));
+            found.unwrap()
+        };
+        let found = better(3);
+        assert_eq!(found, better(3));
+        assert!(found.quality >= found.start_quality);
+        gained += usize::from(found.quality > found.start_quality + 0.01);
+        let poses = object_from_links(
+            &hand,
+            &found.reached.object_from_palm,
+            &found.reached.joints,
+        );
+        for (link, pose) in poses.iter().enumerate() {
+            let is_tip = hand.fingers().iter().any(|f| f.tip_links.contains(&link));
+            let free = link_distance(hand.model(), link, pose, &mesh, 6e-3);
+            if is_tip {
+                assert!(free > 0.0 && free < 1e-3, "{link} {free}");
+            } else {
+                assert!(free >= 5e-3, "{link} {free}");
+            }
+        }
+        for (made, wanted) in found.reached.contacts.iter().zip(wanted) {
+            let apart = (made.position - wanted.position).norm();
+            assert!(apart <= found.reached.position_error);
+        }
+    }
+    assert!(gained >= 3, "{gained}");
 }
 
 #[test]

@@ -159,6 +159,11 @@ impl<'a> CollisionObject<'a> {
         self.surface
     }
 
+    /// Circles of latitude, poles included, and points on each of the mesh.
+    pub fn grid(&self) -> (usize, usize) {
+        self.tree.grid()
+    }
+
     /// An estimate of how far the facets are from the smooth surface, metres: an eighth
     /// of the largest second difference along the grid, normal to the surface.
     pub fn mesh_error(&self) -> f64 {

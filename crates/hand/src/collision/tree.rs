@@ -66,6 +66,11 @@ impl Tree {
         tree
     }
 
+    /// Rows and columns of the vertices.
+    pub(super) fn grid(&self) -> (usize, usize) {
+        (self.vertices.len() / self.columns, self.columns)
+    }
+
     fn at(&self, row: usize, column: usize) -> Vector3<f64> {
         self.vertices[row * self.columns + column % self.columns]
     }

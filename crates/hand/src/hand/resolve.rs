@@ -190,17 +190,17 @@ fn moving_links(
     shapes: &[LinkShape],
     closing: &[(usize, f64)],
 ) -> (Vec<usize>, Vec<f64>, Vec<Vec<f64>>) {
-    let driven_by = |joint: usize| match model.joints[joint].drive {
-        Drive::Fixed => None,
-        Drive::Driven(index) => Some(index),
-        Drive::Mimic { driven, .. } => Some(driven),
-    };
-    let rate_of = |joint: usize| match model.joints[joint].drive {
-        Drive::Fixed => 0.0,
-        Drive::Driven(index) => rate(closing, index),
-        Drive::Mimic {
-            driven, multiplier, ..
-        } => multiplier * rate(closing, driven),
+    // Which closing joint moves a joint, and how fast.
+    let part_of = |joint: usize| {
+        let (driven, factor) = match model.joints[joint].drive {
+            Drive::Fixed => return None,
+            Drive::Driven(driven) => (driven, 1.0),
+            Drive::Mimic {
+                driven, multiplier, ..
+            } => (driven, multiplier),
+        };
+        let part = closing.iter().position(|c| c.0 == driven)?;
+        Some((part, factor * closing[part].1)).filter(|(_, rate)| *rate != 0.0)
     };
     let mut links = Vec::new();
     let mut speeds = Vec::new();
@@ -208,20 +208,13 @@ fn moving_links(
     for (link, shape) in shapes.iter().enumerate() {
         let mut reach = shape.reach();
         let mut parts = vec![0.0; closing.len()];
+        // A frame on the axis turns although no point of it moves, and so do its children.
         let mut moves = false;
         for joint in model.path_to_root(link) {
-            let rate: f64 = rate_of(joint);
-            if rate != 0.0 {
+            if let Some((part, rate)) = part_of(joint) {
                 moves = true;
-                let arm = if model.joints[joint].kind == JointKind::Prismatic {
-                    1.0
-                } else {
-                    reach
-                };
-                let part = closing.iter().position(|c| Some(c.0) == driven_by(joint));
-                if let Some(part) = part {
-                    parts[part] += rate.abs() * arm;
-                }
+                let slides = model.joints[joint].kind == JointKind::Prismatic;
+                parts[part] += rate.abs() * if slides { 1.0 } else { reach };
             }
             let joint = &model.joints[joint];
             if joint.kind == JointKind::Prismatic {
@@ -236,13 +229,6 @@ fn moving_links(
         }
     }
     (links, speeds, by_joint)
-}
-
-fn rate(closing: &[(usize, f64)], driven: usize) -> f64 {
-    closing
-        .iter()
-        .find(|(index, _)| *index == driven)
-        .map_or(0.0, |(_, ratio)| *ratio)
 }
 
 pub(super) fn preshapes(

@@ -153,18 +153,9 @@ impl<'a> Problem<'a> {
 
     /// Least squares without, then with clearances; returns the misfit of the tips in metres.
     pub(super) fn solve(&self, x: &mut DVector<f64>, task: &Task<'_>) -> f64 {
-        let stopping = Stopping {
-            iterations: 25,
-            cost: 1e-10,
-            decrease: 1e-3,
-        };
-        let project = |x: &mut DVector<f64>| {
-            self.hand.model.clamp_to_limits(&mut x.as_mut_slice()[6..]);
-        };
-        let tips_only = |x: &DVector<f64>, _: Option<&DVector<f64>>| {
+        self.minimise(x, |x, _| {
             DVector::from_vec(self.tips(&self.links(x), task, FACING_WEIGHTS.0))
-        };
-        minimise(x, stopping, tips_only, project);
+        });
         let misfit = self.misfit(x, task);
         if misfit > HOPELESS {
             return misfit;
@@ -174,22 +165,28 @@ impl<'a> Problem<'a> {
 
     /// Least squares with clearances from a state near the contacts; the misfit of the tips.
     pub(super) fn settle(&self, x: &mut DVector<f64>, task: &Task<'_>) -> f64 {
+        self.minimise(x, |x, near| {
+            let poses = self.links(x);
+            let mut all = self.tips(&poses, task, FACING_WEIGHTS.1);
+            self.push_clearances(&poses, task, near, &mut all);
+            DVector::from_vec(all)
+        });
+        self.misfit(x, task)
+    }
+
+    fn minimise(
+        &self,
+        x: &mut DVector<f64>,
+        residuals: impl Fn(&DVector<f64>, Option<&DVector<f64>>) -> DVector<f64>,
+    ) {
         let stopping = Stopping {
             iterations: 25,
             cost: 1e-10,
             decrease: 1e-3,
         };
-        let project = |x: &mut DVector<f64>| {
-            self.hand.model.clamp_to_limits(&mut x.as_mut_slice()[6..]);
-        };
-        let all = |x: &DVector<f64>, near: Option<&DVector<f64>>| {
-            let poses = self.links(x);
-            let mut all = self.tips(&poses, task, FACING_WEIGHTS.1);
-            self.push_clearances(&poses, task, near, &mut all);
-            DVector::from_vec(all)
-        };
-        minimise(x, stopping, all, project);
-        self.misfit(x, task)
+        let model = &self.hand.model;
+        let project = |x: &mut DVector<f64>| model.clamp_to_limits(&mut x.as_mut_slice()[6..]);
+        minimise(x, stopping, residuals, project);
     }
 
     fn misfit(&self, x: &DVector<f64>, task: &Task<'_>) -> f64 {
