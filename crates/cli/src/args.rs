@@ -92,6 +92,10 @@ pub(crate) struct CloudOptions {
     /// Weight of the penalty; chosen from the data by default.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) lambda: Option<f64>,
+    /// Smooth the surface by heat flowing for this time (0.001 softens edges): details narrower than
+    /// about its square root, in radians, go.
+    #[arg(long, value_name = "SIGMA", allow_negative_numbers = true)]
+    pub(crate) heat: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

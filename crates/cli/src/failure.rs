@@ -40,6 +40,15 @@ impl Failure {
         }
     }
 
+    /// What is left to say when some of several inputs failed; the exit code of the first.
+    pub(crate) fn all(failures: Vec<Self>) -> Result<(), Self> {
+        let Some(code) = failures.first().map(|f| f.code) else {
+            return Ok(());
+        };
+        let messages: Vec<String> = failures.into_iter().map(|f| f.message).collect();
+        Err(Self::new(code, messages.join("\nerror: ")))
+    }
+
     pub(crate) fn exit_code(&self) -> ExitCode {
         ExitCode::from(self.code)
     }

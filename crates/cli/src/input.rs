@@ -57,7 +57,15 @@ pub(crate) fn fit(cloud: &PointCloud, name: &str, options: &CloudOptions) -> Res
         degree: options.degree,
         lambda: options.lambda,
     };
-    let fit = shape::fit::fit(cloud, &settings).map_err(|e| match e {
+    let fitted = shape::fit::fit(cloud, &settings);
+    let smoothed = fitted.and_then(|fit| match options.heat {
+        Some(sigma) => fit.smoothed(cloud, sigma),
+        None => Ok(fit),
+    });
+    let fit = smoothed.map_err(|e| match e {
+        FitError::Heat { sigma } => {
+            Failure::usage(format!("--heat {sigma}: expected a number, at least 0"))
+        }
         FitError::Regression(sph::regression::RegressionError::Penalty { lambda }) => {
             Failure::usage(format!("--lambda {lambda}: expected a number ≥ 0"))
         }

@@ -98,5 +98,7 @@ pub(crate) struct TransferOptions {
     #[arg(long)]
     pub(crate) thorough: bool,
     #[command(flatten)]
+    pub(crate) limits: LimitOptions,
+    #[command(flatten)]
     pub(crate) moved: MoveOptions,
 }

@@ -38,6 +38,10 @@ pub(crate) struct SynthesizeOptions {
     /// Grasps of less quality count as unstable.
     #[arg(long, default_value_t = 0.01, allow_negative_numbers = true)]
     pub(crate) least_quality: f64,
+    /// Power grasps: close past the tips until every link of a finger holds the object or its joints
+    /// are at their limits; all links that touch are contacts.
+    #[arg(long)]
+    pub(crate) power: bool,
     /// Pre-shape to close from; several: any of them. By default all of the hand.
     #[arg(long, value_name = "NAME")]
     pub(crate) preshape: Vec<String>,

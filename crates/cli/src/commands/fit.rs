@@ -36,8 +36,15 @@ pub(crate) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> 
             "cloud", "points", "L", "lambda", "rms mm", "max mm", "r certified mm", "cond", "s"
         ));
     }
+    let mut failures = Vec::new();
     for path in &options.clouds {
-        let line = fit_one(path, options, common.seed)?;
+        let line = match fit_one(path, options, common.seed) {
+            Ok(line) => line,
+            Err(failure) => {
+                failures.push(failure);
+                continue;
+            }
+        };
         if common.json {
             output::say_json(&line)?;
         } else {
@@ -56,7 +63,7 @@ pub(crate) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> 
             ));
         }
     }
-    Ok(())
+    Failure::all(failures)
 }
 
 fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Failure> {

@@ -72,6 +72,7 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
         poses: options.poses,
         preshapes: (0..hand.preshapes().len()).collect(),
         least_quality: LEAST_QUALITY,
+        power: false,
         seed: common.seed,
     };
     let found = synthesize(&target, &hand, &request, &bar)?;
@@ -143,8 +144,14 @@ fn carried(
     let library = library::built_in()?;
     let neighbours = transfer::neighbours(target, &library, options.neighbours)?;
     let bar = output::progress(common.quiet, 0, "transferring");
-    let all = transfer::candidates(target, &neighbours, options.transfers, &bar)?;
+    let mut all = transfer::candidates(target, &neighbours, options.transfers, &bar)?;
     bar.finish_and_clear();
+    if library.hand != hand.name() {
+        // Poses and joints of another hand say nothing of this one's.
+        all.iter_mut()
+            .filter_map(|c| c.carried.as_mut())
+            .for_each(|c| c.hand = None);
+    }
     let fits = |c: &Candidate| c.contacts.len() == hand.fingers().len();
     let closed = all.iter().filter(|c| c.quality > 0.0).count();
     let counted = all.len();

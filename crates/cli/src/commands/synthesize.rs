@@ -109,6 +109,7 @@ fn request(options: &SynthesizeOptions, common: &Common, hand: &Hand) -> Result<
         poses: options.poses,
         preshapes,
         least_quality: options.least_quality,
+        power: options.power,
         seed: common.seed,
     })
 }

@@ -7,7 +7,8 @@ use std::time::Instant;
 
 use moduli::transfer::Transfer;
 use moduli::{
-    Continuation, Objective, PaperAscent, PaperTransfer, Step, TransferError, Transferred,
+    Constraints, Continuation, Objective, PaperAscent, PaperTransfer, Step, TransferError,
+    Transferred,
 };
 use record::grasps::SourceRecord;
 use shape::{RadialField, Surface, space};
@@ -16,8 +17,8 @@ use crate::args::{Common, TransferOptions, TransferScheme};
 use crate::commands::ascend::PAPER_ASCENT;
 use crate::delivery::Movement;
 use crate::failure::Failure;
-use crate::input;
 use crate::placed::{Moved, Object, Placed, TraceStep};
+use crate::{input, limits};
 
 /// The paper's transfer (Sec. IV-E).
 const PAPER: PaperTransfer = PaperTransfer {
@@ -30,7 +31,7 @@ const PAPER: PaperTransfer = PaperTransfer {
 
 /// How grasps are carried, with the shapes on the way.
 enum Scheme {
-    Ours(Continuation, Vec<RadialField>),
+    Ours(Continuation, Constraints, Vec<RadialField>),
     Paper(Vec<RadialField>),
     Naive,
 }
@@ -59,21 +60,29 @@ fn one_pair(
         object_origin: to.origin(),
     };
     let start = Instant::now();
-    let scheme = prepare(options, &transfer).map_err(|e| {
-        Failure::refused(format!("{} to {}: {e}", from.record.name, to.record.name))
-    })?;
+    let objective = Objective::new(&convention, &to.surface, &to.origin());
+    let scheme = prepare(options, &transfer, &objective)?;
     let source = source(&from, &to);
     let movement = Movement {
         doing: "transferring",
         scheme: scheme_name(options),
         object: &to,
-        objective: &Objective::new(&convention, &to.surface, &to.origin()),
+        objective: &objective,
         start,
     };
     movement.run(&grasps, &options.moved, common, |i, placed| {
-        carry(options, &scheme, &transfer, &to, placed, &source)
-            .map_err(|e| Failure::input(path, format!("grasp {i}: {e}")))
+        carry(options, &scheme, &transfer, &to, placed, &source).map_err(|e| failed(path, i, &e))
     })
+}
+
+fn failed(path: &Path, index: usize, error: &TransferError) -> Failure {
+    match error {
+        TransferError::Constraints(e) => Failure::refused(format!(
+            "{}: grasp {index}: {e}; loosen the limits or leave the grasp out",
+            path.display()
+        )),
+        other => Failure::input(path, format!("grasp {index}: {other}")),
+    }
 }
 
 fn scheme_name(options: &TransferOptions) -> &'static str {
@@ -84,7 +93,17 @@ fn scheme_name(options: &TransferOptions) -> &'static str {
     }
 }
 
-fn prepare(options: &TransferOptions, transfer: &Transfer) -> Result<Scheme, TransferError> {
+/// The scheme with the shapes on its way; `objective` is that of the target.
+fn prepare(
+    options: &TransferOptions,
+    transfer: &Transfer,
+    objective: &Objective,
+) -> Result<Scheme, Failure> {
+    let constraints = limits::constraints(&options.limits, objective)?;
+    if options.scheme != TransferScheme::Ours && !constraints.is_empty() {
+        return Err(Failure::usage("only --scheme ours knows limits"));
+    }
+    let refused = |e: TransferError| Failure::refused(format!("shapes on the way: {e}"));
     Ok(match options.scheme {
         TransferScheme::Ours => {
             let scheme = if options.thorough {
@@ -92,9 +111,10 @@ fn prepare(options: &TransferOptions, transfer: &Transfer) -> Result<Scheme, Tra
             } else {
                 Continuation::default()
             };
-            Scheme::Ours(scheme, scheme.stations(transfer)?)
+            let stations = scheme.stations(transfer).map_err(refused)?;
+            Scheme::Ours(scheme, constraints, stations)
         }
-        TransferScheme::Paper => Scheme::Paper(PAPER.stations(transfer)?),
+        TransferScheme::Paper => Scheme::Paper(PAPER.stations(transfer).map_err(refused)?),
         TransferScheme::Naive => Scheme::Naive,
     })
 }
@@ -125,7 +145,9 @@ fn carry(
     };
     let start = &placed.directions;
     let end: Transferred = match scheme {
-        Scheme::Ours(scheme, stations) => scheme.carry(transfer, stations, start, keep)?,
+        Scheme::Ours(scheme, constraints, stations) => {
+            scheme.carry_within(transfer, stations, start, constraints, keep)?
+        }
         Scheme::Paper(stations) => PAPER.carry(transfer, stations, start, keep)?,
         Scheme::Naive => transfer.naive(start)?,
     };

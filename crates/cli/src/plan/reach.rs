@@ -46,7 +46,8 @@ pub(crate) fn give_hands(
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             // Streams are independent sequences of one seed; 0 is that of the hand poses.
             rng.set_stream(1 + i as u64);
-            let known: Vec<_> = candidate.carried.iter().map(|c| c.hand.clone()).collect();
+            let carried = candidate.carried.as_ref();
+            let known: Vec<_> = carried.and_then(|c| c.hand.clone()).into_iter().collect();
             match reacher.reach(&candidate.contacts, &params, &known, &mut rng) {
                 ReachOutcome::Reached(found) => candidate.hand = Some(placement(found)),
                 ReachOutcome::Near(near) => {

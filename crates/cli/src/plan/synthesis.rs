@@ -18,6 +18,8 @@ pub(crate) struct Request {
     /// Indices of the pre-shapes to close from.
     pub(crate) preshapes: Vec<usize>,
     pub(crate) least_quality: f64,
+    /// Close past the tips.
+    pub(crate) power: bool,
     pub(crate) seed: u64,
 }
 
@@ -36,7 +38,10 @@ pub(crate) fn synthesize(
             preshapes: request.preshapes.clone(),
             ..PoseSampling::of_hand(hand)
         },
-        rules: ClosingRules::default(),
+        rules: ClosingRules {
+            past_tips: request.power,
+            ..ClosingRules::default()
+        },
         convention: target.convention.clone(),
         centre: target.centre,
         least_quality: request.least_quality,

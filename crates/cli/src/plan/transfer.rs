@@ -24,8 +24,8 @@ pub(crate) struct Neighbour<'a> {
 /// What a transferred grasp brings along.
 #[derive(Clone, Debug)]
 pub(crate) struct Carried {
-    /// The hand on the library object, moved rigidly with its contacts.
-    pub(crate) hand: HandState,
+    /// The hand on the library object, moved rigidly with its contacts; none of another hand.
+    pub(crate) hand: Option<HandState>,
     /// Quality on the target of the same directions, not improved.
     pub(crate) naive: f64,
 }
@@ -128,6 +128,9 @@ fn carry(
             source_quality: grasp.quality,
         },
         hand: None,
-        carried: Some(Carried { hand, naive }),
+        carried: Some(Carried {
+            hand: Some(hand),
+            naive,
+        }),
     })
 }

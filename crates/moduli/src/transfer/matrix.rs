@@ -194,7 +194,10 @@ mod tests {
         let mut calls = calls.into_inner().unwrap();
         calls.sort_unstable();
         let once: Vec<usize> = (0..200).filter(|j| *j != 1).collect();
-        assert_eq!(calls, once, "every open job is done once, those given are not");
+        assert_eq!(
+            calls, once,
+            "every open job is done once, those given are not"
+        );
     }
 
     #[test]

@@ -16,7 +16,7 @@ use record::envelope::checksum;
 use serde::Serialize;
 use serde_json::json;
 
-use super::{carry, prepare, scheme_name, source};
+use super::{carry, failed, prepare, scheme_name, source};
 use crate::args::{Common, TransferOptions};
 use crate::delivery::{UNSTABLE_BELOW, move_all};
 use crate::failure::Failure;
@@ -148,10 +148,11 @@ fn pairs<'a>(
     convention: &Convention,
 ) -> Vec<Pair<'a>> {
     let how = format!(
-        "{} {} {} {convention:?}",
+        "{} {} {} {:?} {convention:?}",
         env!("CARGO_PKG_VERSION"),
         scheme_name(options),
-        options.thorough
+        options.thorough,
+        options.limits
     );
     let how = checksum(how.as_bytes());
     let all = sources
@@ -193,15 +194,13 @@ impl Pair<'_> {
             convention,
             object_origin: to.origin(),
         };
-        let scheme = prepare(options, &transfer).map_err(|e| {
-            Failure::refused(format!("{} to {}: {e}", self.from.side.stem, self.to.stem))
-        })?;
+        let objective = Objective::new(convention, &to.surface, &to.origin());
+        let scheme = prepare(options, &transfer, &objective)?;
         let source = source(from, to);
         let moved = move_all(&self.from.grasps, |i, placed| {
             carry(options, &scheme, &transfer, to, placed, &source)
-                .map_err(|e| Failure::input(&self.from.path, format!("grasp {i}: {e}")))
+                .map_err(|e| failed(&self.from.path, i, &e))
         })?;
-        let objective = Objective::new(convention, &to.surface, &to.origin());
         let file = to.file(&objective, &moved);
         let mut value = serde_json::to_value(&file)
             .map_err(|e| Failure::other(format!("cannot encode the result as JSON: {e}")))?;
