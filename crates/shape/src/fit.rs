@@ -43,7 +43,7 @@ pub const MOST_UNSEEN: f64 = 0.4;
 /// on scans with hard edges and of 1 to 3 on smooth or noisy ones, and it is flat: a factor of 0.5 costs
 /// at most 1 % over the best one on 28 scans, clean and noisy (3 % on a smooth apple), and beats plain
 /// least squares in 83 of 84 halves of the 14 objects of the tests, where a factor of 1 does in 79.
-/// Against the true surface of modelled objects, which had no part in the choice, 0.5 is 2 to 12 % above
+/// Against the true surface of modelled objects, which had no part in the choice, 0.5 is up to 12 % above
 /// the best, 0.3 4 to 22 %, 1 up to 3 % (two nearly round ones 41 to 53, 59 to 73 and 21 to 29 %).
 const EASE: f64 = 0.5;
 /// Fewer points than coefficients resolve degrees up to about this times √N.
