@@ -1,10 +1,10 @@
-//! The moduli space: one quality, one step of the paper's ascent.
+//! The moduli space: one quality, steps of the paper's ascent, a whole ascent of ours.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use grasp::Convention;
-use moduli::{Objective, PaperAscent};
+use moduli::{MonotoneAscent, Objective, PaperAscent};
 use nalgebra::Point3;
-use shape::RadialShape;
+use shape::{RadialField, RadialShape};
 use sph::{Coefficients, SphericalCoords, index};
 
 fn bench(criterion: &mut Criterion) {
@@ -26,6 +26,14 @@ fn bench(criterion: &mut Criterion) {
     };
     criterion.bench_function("moduli/ten steps of the paper's ascent L=50", |bencher| {
         bencher.iter(|| ascent.climb(&shape, &start, &mut objective, |_| {}))
+    });
+    let field = RadialField::new(shape);
+    criterion.bench_function("moduli/ten steps of the paper's ascent, field", |bencher| {
+        bencher.iter(|| ascent.climb(&field, &start, &mut objective, |_| {}))
+    });
+    let ours = MonotoneAscent::default();
+    criterion.bench_function("moduli/our ascent, field", |bencher| {
+        bencher.iter(|| ours.climb(&field, &start, &mut objective, |_| {}))
     });
 }
 
