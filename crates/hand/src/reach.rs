@@ -28,7 +28,7 @@ const PROMISING: f64 = 3e-3;
 /// What is wanted of a hand that reaches contacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReachParams {
-    /// Number of starts, at most.
+    /// Number of random starts, at most.
     pub starts: usize,
     /// Contacts may be this far from where they were wanted, metres.
     pub tolerance: f64,
@@ -137,7 +137,7 @@ pub fn reach_contacts<R: Rng + ?Sized>(
 }
 
 impl<'a> Reacher<'a> {
-    /// Prepares an object (some milliseconds).
+    /// Prepares both; for any number of searches.
     pub fn new(object: &'a CollisionObject<'a>, hand: &'a Hand) -> Self {
         Reacher {
             problem: Problem::new(object, hand),
