@@ -37,6 +37,12 @@ pub struct Ascent {
     /// Slope of Q left at the end, per radian: the norm of the gradient in the paper's ascent; in
     /// ours |u|/ρ for the u that maximises the least of the linearised facets less |u|²/2ρ within
     /// the limits, ρ = 0.01 (the gradient of the Moreau envelope). 0 exactly at a maximum.
+    ///
+    /// Q of friction pyramids jumps where their frames do ([`Quality::walls`]). Jumps over which the
+    /// climb found Q to fall count as limits, so this is the slope on the side of the jump where the
+    /// grasp is: 0 also where Q has no maximum but a supremum against a jump.
+    ///
+    /// [`Quality::walls`]: crate::Quality::walls
     pub stationarity: f64,
     /// Qualities computed on the way.
     pub evaluations: usize,

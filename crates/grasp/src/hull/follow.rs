@@ -61,8 +61,8 @@ impl Search {
 
     /// Adds a point above a facet; false where that could turn the surface over.
     ///
-    /// What a vertex takes away and what it adds bound the simplices between the vertex and each
-    /// visible facet. The origin is below these facets, so it is in none of those simplices.
+    /// The facets that a vertex takes away and those that it adds bound the simplices between the
+    /// vertex and each facet that it sees. The origin is below these facets, so in no such simplex.
     pub(super) fn expand_moved(
         &mut self,
         facet: usize,

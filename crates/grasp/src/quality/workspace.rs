@@ -44,8 +44,8 @@ impl Workspace {
     /// facets goes on from where the last one ended.
     ///
     /// Answers agree with those of [`Workspace::new`] to rounding, not to the last bit: they depend
-    /// on the grasps before. The nearer those are the less is computed, from 1/4 of a new search for
-    /// steps of 0.01 rad to 1/30 for the steps of differences; far ones cost a new search.
+    /// on the grasps before. The nearer those are the less is computed, next to nothing for the steps
+    /// of differences; far ones cost a new search.
     pub fn following() -> Self {
         Self {
             follows: true,

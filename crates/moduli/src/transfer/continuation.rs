@@ -93,7 +93,7 @@ impl Default for Continuation {
 }
 
 impl Continuation {
-    /// Always recovers, from more starts: some seven times the cost, for the last few per cent.
+    /// Always recovers, from more starts: some six times the qualities, for ends that nearby starts do not beat.
     pub fn thorough() -> Self {
         Self {
             recovery: Some(Recovery {
