@@ -68,12 +68,6 @@ fn reading(c: &mut Criterion) {
     ascent(c, "three field jets of an ascent", &points, |p| {
         field.jet(p)
     });
-    ascent(
-        c,
-        "three field values and gradients of an ascent",
-        &points,
-        |p| field.value_and_gradient(p),
-    );
     ascent(c, "three field values of an ascent", &points, |p| {
         field.value(p)
     });

@@ -50,8 +50,8 @@ impl Surface for RadialField {
     }
 
     fn contact(&self, p: &Direction) -> (Point3<f64>, UnitVector3<f64>) {
-        let first = self.field.value_and_gradient(p);
-        contact_of(p, first.value, &first.gradient)
+        let jet = self.field.jet(p);
+        contact_of(p, jet.value, &jet.gradient)
     }
 
     fn differential(&self, p: &Direction) -> Differential {

@@ -61,7 +61,7 @@ pub struct Solution {
 }
 
 impl Gram {
-    /// The equations of unweighted samples. About 600 flops a point and 50 L³.
+    /// The equations of unweighted samples. About 2,000 flops a point and 50 L³.
     pub fn new(samples: Samples, degree: usize) -> Result<Self, RegressionError> {
         Self::build(samples, None, degree)
     }
