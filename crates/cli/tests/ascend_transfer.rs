@@ -220,6 +220,31 @@ fn transfers_end_on_the_target_in_its_own_frame() {
 }
 
 #[test]
+fn limits_of_a_transfer_are_kept_or_refused() {
+    let folder = prepared();
+    let here = folder.path();
+    let with = |more: &[&'static str]| {
+        let mut arguments = vec!["transfer", "--from", "egg.shape", "--to", "ball.shape"];
+        arguments.extend(["grasps.json", "-o", "held.json"]);
+        arguments.extend(more);
+        moduli(here, &arguments)
+    };
+    stdout(&with(&["--separation", "35", "--reach", "60"]));
+    let held = read(here, "held.json");
+    for grasp in held["grasps"].as_array().unwrap() {
+        let at: Vec<Vec<f64>> = serde_json::from_value(grasp["contacts_m"].clone()).unwrap();
+        for (i, a) in at.iter().enumerate() {
+            for b in &at[i + 1..] {
+                let apart: f64 = a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum();
+                assert!((0.035 - 1e-9..=0.060 + 1e-9).contains(&apart.sqrt()));
+            }
+        }
+    }
+    refused(&with(&["--separation", "500"]), 4, &["grasp 0", "limits"]);
+    refused(&with(&["--scheme", "naive", "--reach", "60"]), 2, &["ours"]);
+}
+
+#[test]
 fn many_transfers_go_on_where_they_were_interrupted() {
     let folder = prepared();
     let here = folder.path();

@@ -270,6 +270,44 @@ fn bad_input_names_the_file_and_the_place() {
 }
 
 #[test]
+fn a_refused_cloud_does_not_stop_the_others() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    ellipsoid_cloud(here);
+    std::fs::write(here.join("broken.ply"), "ply\nnonsense").unwrap();
+    let arguments = ["fit", "missing.ply", "egg.ply", "broken.ply", "--json"];
+    let mut all = arguments.to_vec();
+    all.extend(["--degree", "6", "-o", "shapes"]);
+    let output = moduli(here, &all);
+    refused(&output, 3, &["missing.ply", "broken.ply"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(said.lines().count(), 1, "{said}");
+    assert!(here.join("shapes/egg.shape").exists());
+}
+
+#[test]
+fn heat_smooths_a_surface_and_the_wrong_heat_is_bad_usage() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    ellipsoid_cloud(here);
+    let fit = |heat: &str| {
+        let arguments = ["fit", "egg.ply", "--degree", "8", "--json", "--heat", heat];
+        moduli(here, &arguments)
+    };
+    let bounds = |heat: &str| -> (f64, f64) {
+        let line: serde_json::Value = serde_json::from_str(&stdout(&fit(heat))).unwrap();
+        let of = |key: &str| line[key].as_f64().unwrap();
+        (of("r_min_certified_m"), of("r_max_certified_m"))
+    };
+    let (cold, hot) = (bounds("0"), bounds("0.1"));
+    assert!(
+        hot.0 > cold.0 + 1e-3 && hot.1 < cold.1 - 1e-3,
+        "{cold:?} {hot:?}"
+    );
+    refused(&fit("-1"), 2, &["--heat -1"]);
+}
+
+#[test]
 fn points_that_surround_nothing_are_refused() {
     let folder = TempDir::new().unwrap();
     let sheet: String = (0..900)

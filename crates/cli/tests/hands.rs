@@ -171,6 +171,29 @@ fn synthesis_writes_json_yaml_and_a_page() {
 }
 
 #[test]
+fn power_grasps_have_contacts_of_more_than_tips() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    fitted(here, "can", [0.033, 0.033, 0.050]);
+    let contacts = |more: &[&str]| -> Vec<usize> {
+        let mut arguments = vec!["synthesize", "can.shape", "--poses", "80", "-o", "out"];
+        arguments.extend(more);
+        stdout(&moduli(here, &arguments));
+        let file = read(here, "out/grasps.json");
+        let grasps = file["grasps"].as_array().unwrap().iter();
+        let count = |g: &Value| {
+            let count = g["contacts_m"].as_array().unwrap().len();
+            assert_eq!(g["inward_normals"].as_array().unwrap().len(), count);
+            count
+        };
+        grasps.map(count).collect()
+    };
+    assert!(contacts(&[]).iter().all(|n| *n == 3));
+    let held = contacts(&["--power"]);
+    assert!(held.iter().any(|n| *n > 3), "{held:?}");
+}
+
+#[test]
 fn no_grasps_say_why() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();

@@ -42,11 +42,24 @@ pub(crate) struct SynthesizeOptions {
     /// are at their limits; all links that touch are contacts.
     #[arg(long)]
     pub(crate) power: bool,
+    /// Distances from the surface to the hand's approach point to draw from, millimetres; by default
+    /// those of the hand's TOML, and for power grasps, which begin nearer, 0.7 of the least to the least.
+    #[arg(long, value_name = "MIN,MAX", allow_hyphen_values = true, value_parser = standoff)]
+    pub(crate) standoff: Option<(f64, f64)>,
     /// Pre-shape to close from; several: any of them. By default all of the hand.
     #[arg(long, value_name = "NAME")]
     pub(crate) preshape: Vec<String>,
     #[command(flatten)]
     pub(crate) convention: ConventionOptions,
+}
+
+/// MIN,MAX in millimetres, as metres.
+fn standoff(text: &str) -> Result<(f64, f64), String> {
+    let millimetre = |cell: &str| cell.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+    text.split_once(',')
+        .and_then(|(low, high)| Some((1e-3 * millimetre(low)?, 1e-3 * millimetre(high)?)))
+        .filter(|(low, high)| low <= high)
+        .ok_or_else(|| "expected MIN,MAX in millimetres, MIN at most MAX".to_owned())
 }
 
 #[derive(Debug, Subcommand)]

@@ -72,6 +72,7 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
         poses: options.poses,
         preshapes: (0..hand.preshapes().len()).collect(),
         least_quality: LEAST_QUALITY,
+        standoff: None,
         power: false,
         seed: common.seed,
     };

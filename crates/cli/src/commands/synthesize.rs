@@ -14,6 +14,10 @@ use crate::plan::synthesis::{self, Request, reasons, sentence};
 use crate::plan::{Fitted, Target, ranking};
 use crate::{hands, input, output};
 
+/// Power grasps begin at this part of the least stand-off of grasps with the tips; the palm may touch
+/// no nearer than its clearance, and from farther away only tips arrive.
+const POWER_STANDOFF: f64 = 0.7;
+
 #[derive(Serialize)]
 struct SynthesizeLine<'a> {
     object: &'a str,
@@ -105,10 +109,13 @@ fn request(options: &SynthesizeOptions, common: &Common, hand: &Hand) -> Result<
     if preshapes.is_empty() {
         preshapes = (0..hand.preshapes().len()).collect();
     }
+    let (least, _) = hand.standoff();
+    let nearer = options.power.then_some((POWER_STANDOFF * least, least));
     Ok(Request {
         poses: options.poses,
         preshapes,
         least_quality: options.least_quality,
+        standoff: options.standoff.or(nearer),
         power: options.power,
         seed: common.seed,
     })

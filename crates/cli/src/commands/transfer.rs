@@ -31,7 +31,7 @@ const PAPER: PaperTransfer = PaperTransfer {
 
 /// How grasps are carried, with the shapes on the way.
 enum Scheme {
-    Ours(Continuation, Constraints, Vec<RadialField>),
+    Ours(Continuation, Box<Constraints>, Vec<RadialField>),
     Paper(Vec<RadialField>),
     Naive,
 }
@@ -112,7 +112,7 @@ fn prepare(
                 Continuation::default()
             };
             let stations = scheme.stations(transfer).map_err(refused)?;
-            Scheme::Ours(scheme, constraints, stations)
+            Scheme::Ours(scheme, Box::new(constraints), stations)
         }
         TransferScheme::Paper => Scheme::Paper(PAPER.stations(transfer).map_err(refused)?),
         TransferScheme::Naive => Scheme::Naive,

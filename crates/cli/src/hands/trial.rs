@@ -46,6 +46,7 @@ pub(crate) fn on_ball(hand: &Hand, diameter_mm: f64, seed: u64) -> Result<Trial,
         poses: POSES,
         preshapes: (0..hand.preshapes().len()).collect(),
         least_quality: LEAST_QUALITY,
+        standoff: None,
         power: false,
         seed,
     };

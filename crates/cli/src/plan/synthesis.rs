@@ -18,6 +18,8 @@ pub(crate) struct Request {
     /// Indices of the pre-shapes to close from.
     pub(crate) preshapes: Vec<usize>,
     pub(crate) least_quality: f64,
+    /// Range of the distance from the surface, metres; that of the hand when absent.
+    pub(crate) standoff: Option<(f64, f64)>,
     /// Close past the tips.
     pub(crate) power: bool,
     pub(crate) seed: u64,
@@ -36,6 +38,7 @@ pub(crate) fn synthesize(
         poses: request.poses,
         sampling: PoseSampling {
             preshapes: request.preshapes.clone(),
+            standoff: request.standoff.unwrap_or(hand.standoff()),
             ..PoseSampling::of_hand(hand)
         },
         rules: ClosingRules {
