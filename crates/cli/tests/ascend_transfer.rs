@@ -7,24 +7,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use common::{moduli, refused, stdout};
-
-/// Fits an ellipsoid of these half axes about a centre.
-fn fitted(folder: &Path, name: &str, axes: [f64; 3], centre: [f64; 3]) {
-    let text: String = sph::direction::even_directions(1200)
-        .iter()
-        .map(|p| {
-            let at = |k: usize| centre[k] + axes[k] * p[k];
-            format!("{} {} {}\n", at(0), at(1), at(2))
-        })
-        .collect();
-    std::fs::write(folder.join(format!("{name}.xyz")), text).unwrap();
-    let (cloud, shape) = (format!("{name}.xyz"), format!("{name}.shape"));
-    stdout(&moduli(
-        folder,
-        &["fit", &cloud, "--degree", "8", "-o", &shape, "-q"],
-    ));
-}
+use common::{fitted, moduli, refused, stdout};
 
 /// Two objects and two grasps on the first, which is centred at (1, 0, 0.2).
 fn prepared() -> TempDir {
@@ -77,6 +60,19 @@ fn arms(file: &Value, centre: [f64; 3]) -> Vec<f64> {
             (square(0) + square(1) + square(2)).sqrt()
         })
         .collect()
+}
+
+/// Any two contacts of a grasp are between `least` and `most` metres apart.
+fn assert_apart(file: &Value, least: f64, most: f64) {
+    for grasp in file["grasps"].as_array().unwrap() {
+        let at: Vec<Vec<f64>> = serde_json::from_value(grasp["contacts_m"].clone()).unwrap();
+        for (i, a) in at.iter().enumerate() {
+            for b in &at[i + 1..] {
+                let apart: f64 = a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum();
+                assert!((least - 1e-9..=most + 1e-9).contains(&apart.sqrt()));
+            }
+        }
+    }
 }
 
 #[test]
@@ -148,15 +144,7 @@ fn limits_of_an_ascent_are_kept_or_refused() {
         ],
     ));
     let held = read(here, "held.json");
-    for grasp in held["grasps"].as_array().unwrap() {
-        let at: Vec<Vec<f64>> = serde_json::from_value(grasp["contacts_m"].clone()).unwrap();
-        for (i, a) in at.iter().enumerate() {
-            for b in &at[i + 1..] {
-                let apart: f64 = a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum();
-                assert!((0.03 - 1e-9..=0.065 + 1e-9).contains(&apart.sqrt()));
-            }
-        }
-    }
+    assert_apart(&held, 0.03, 0.065);
     let with = |more: &[&'static str]| {
         let mut arguments = vec!["ascend", "egg.shape", "grasps.json"];
         arguments.extend(more);
@@ -231,15 +219,7 @@ fn limits_of_a_transfer_are_kept_or_refused() {
     };
     stdout(&with(&["--separation", "35", "--reach", "60"]));
     let held = read(here, "held.json");
-    for grasp in held["grasps"].as_array().unwrap() {
-        let at: Vec<Vec<f64>> = serde_json::from_value(grasp["contacts_m"].clone()).unwrap();
-        for (i, a) in at.iter().enumerate() {
-            for b in &at[i + 1..] {
-                let apart: f64 = a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum();
-                assert!((0.035 - 1e-9..=0.060 + 1e-9).contains(&apart.sqrt()));
-            }
-        }
-    }
+    assert_apart(&held, 0.035, 0.060);
     refused(&with(&["--separation", "500"]), 4, &["grasp 0", "limits"]);
     refused(&with(&["--scheme", "naive", "--reach", "60"]), 2, &["ours"]);
 }

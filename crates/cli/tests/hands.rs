@@ -7,24 +7,10 @@ use std::path::Path;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use common::{moduli, refused, stdout};
+use common::{fitted, moduli, refused, stdout};
 
-/// Fits an ellipsoid of these half axes about (1, 0, 0.2).
-fn fitted(folder: &Path, name: &str, axes: [f64; 3]) {
-    let text: String = sph::direction::even_directions(1200)
-        .iter()
-        .map(|p| {
-            let at = |k: usize| [1.0, 0.0, 0.2][k] + axes[k] * p[k];
-            format!("{} {} {}\n", at(0), at(1), at(2))
-        })
-        .collect();
-    std::fs::write(folder.join(format!("{name}.xyz")), text).unwrap();
-    let (cloud, shape) = (format!("{name}.xyz"), format!("{name}.shape"));
-    stdout(&moduli(
-        folder,
-        &["fit", &cloud, "--degree", "8", "-o", &shape, "-q"],
-    ));
-}
+/// Where objects stand in their clouds.
+const CENTRE: [f64; 3] = [1.0, 0.0, 0.2];
 
 /// A gripper of two fingers that slide towards each other, with tips from a mesh in a package.
 fn gripper(folder: &Path) {
@@ -91,7 +77,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 fn synthesis_writes_json_yaml_and_a_page() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();
-    fitted(here, "egg", [0.035, 0.030, 0.045]);
+    fitted(here, "egg", [0.035, 0.030, 0.045], CENTRE);
     let arguments = [
         "synthesize",
         "egg.shape",
@@ -174,7 +160,7 @@ fn synthesis_writes_json_yaml_and_a_page() {
 fn power_grasps_have_contacts_of_more_than_tips() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();
-    fitted(here, "can", [0.033, 0.033, 0.050]);
+    fitted(here, "can", [0.033, 0.033, 0.050], CENTRE);
     let contacts = |more: &[&str]| -> Vec<usize> {
         let mut arguments = vec!["synthesize", "can.shape", "--poses", "80", "-o", "out"];
         arguments.extend(more);
@@ -197,7 +183,7 @@ fn power_grasps_have_contacts_of_more_than_tips() {
 fn no_grasps_say_why() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();
-    fitted(here, "crumb", [0.006, 0.006, 0.006]);
+    fitted(here, "crumb", [0.006, 0.006, 0.006], CENTRE);
     let arguments = ["synthesize", "crumb.shape", "--poses", "20", "-o", "none"];
     let output = moduli(here, &arguments);
     refused(&output, 4, &["0 grasps of the hand sdh", "of 20 poses"]);
@@ -228,7 +214,7 @@ fn a_hand_of_ones_own_is_checked_and_used() {
     assert!(page.contains("half: opened") && page.contains("left_slide"));
 
     // Two fingers never close a grasp with point contacts, and the program says so.
-    fitted(here, "egg", [0.035, 0.030, 0.045]);
+    fitted(here, "egg", [0.035, 0.030, 0.045], CENTRE);
     let with = [
         "synthesize",
         "egg.shape",
@@ -311,7 +297,7 @@ fn hostile_hands_are_refused_by_name() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();
     gripper(here);
-    fitted(here, "egg", [0.035, 0.030, 0.045]);
+    fitted(here, "egg", [0.035, 0.030, 0.045], CENTRE);
     let hand = |urdf: &str, spec: &str| {
         let arguments = [
             "synthesize",

@@ -1,9 +1,12 @@
 //! Ascents within limits, on M^sph, under rotation, and of other qualities.
 
+mod common;
+
+use common::{closed_start, lumpy, paper};
 use grasp::{Convention, Edges};
 use moduli::point::contacts_on;
 use moduli::quality::{LinearPieces, Quality};
-use moduli::sample::{ContactSampling, perturbed, perturbed_spherical, uniform_direction};
+use moduli::sample::{ContactSampling, perturbed_spherical};
 use moduli::transfer::{Matrix, Transfer};
 use moduli::{
     AscentError, ByDifferences, Cap, ConstraintError, Constraints, Continuation, MonotoneAscent,
@@ -13,22 +16,8 @@ use nalgebra::{Point3, Rotation3, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use shape::{RadialField, RadialShape, SphericalShape, Surface};
+use sph::Direction;
 use sph::direction::{angle, retract, tangent_frame};
-use sph::{Coefficients, Direction};
-
-fn lumpy(seed: u64) -> RadialShape {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let ball = RadialShape::new(Coefficients::constant(6, 0.04)).unwrap();
-    loop {
-        if let Ok(point) = perturbed(&ball, 1..49, 0.003, 3, &mut rng) {
-            return point.surface;
-        }
-    }
-}
-
-fn paper() -> Convention {
-    Convention::named("paper").unwrap()
-}
 
 /// Quality that no choice of frame changes.
 fn round() -> Convention {
@@ -40,17 +29,6 @@ fn round() -> Convention {
 
 fn objective(convention: &Convention, surface: &impl Surface) -> Objective {
     Objective::new(convention, surface, &Point3::origin())
-}
-
-fn closed_start(surface: &impl Surface, seed: u64) -> Vec<Direction> {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let mut objective = objective(&paper(), surface);
-    loop {
-        let triple: Vec<Direction> = (0..3).map(|_| uniform_direction(&mut rng)).collect();
-        if objective.quality_at(surface, &triple).unwrap() > 0.02 {
-            return triple;
-        }
-    }
 }
 
 fn distances(surface: &impl Surface, contacts: &[Direction]) -> Vec<f64> {

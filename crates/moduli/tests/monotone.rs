@@ -1,42 +1,19 @@
 //! Our ascent: monotone, pole-free, better than the fixed step.
 
+mod common;
+
+use common::{closed_start, lumpy, paper};
 use grasp::{Convention, Edges, FrameRule, Gradient};
 use moduli::point::contacts_on;
-use moduli::sample::{perturbed, uniform_direction};
+use moduli::sample::uniform_direction;
 use moduli::{MonotoneAscent, Objective, PaperAscent};
 use nalgebra::{Point3, Vector3};
 use proptest::prelude::*;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use shape::{RadialField, RadialShape, Surface};
+use shape::{RadialField, Surface};
+use sph::Direction;
 use sph::direction::{retract, tangent_frame};
-use sph::{Coefficients, Direction};
-
-fn lumpy(seed: u64) -> RadialShape {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let ball = RadialShape::new(Coefficients::constant(6, 0.04)).unwrap();
-    loop {
-        if let Ok(point) = perturbed(&ball, 1..49, 0.003, 3, &mut rng) {
-            return point.surface;
-        }
-    }
-}
-
-fn paper() -> Convention {
-    Convention::named("paper").unwrap()
-}
-
-/// The first force-closed triple of a seed.
-fn closed_start(shape: &RadialShape, seed: u64) -> Vec<Direction> {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let mut objective = Objective::new(&paper(), shape, &Point3::origin());
-    loop {
-        let triple: Vec<Direction> = (0..3).map(|_| uniform_direction(&mut rng)).collect();
-        if objective.quality_at(shape, &triple).unwrap() > 0.02 {
-            return triple;
-        }
-    }
-}
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 16, failure_persistence: None, ..ProptestConfig::default() })]

@@ -1,4 +1,5 @@
-//! Running the program, and what it says.
+//! Running the program, and what it says; no test file needs all of it.
+#![allow(dead_code)]
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -31,4 +32,21 @@ pub(crate) fn refused(output: &Output, code: i32, words: &[&str]) {
         assert!(said.contains(word), "`{word}` is not in: {said}");
     }
     assert!(!said.contains("panicked"), "{said}");
+}
+
+/// Fits an ellipsoid of these half axes about a centre: NAME.xyz and NAME.shape.
+pub(crate) fn fitted(folder: &Path, name: &str, axes: [f64; 3], centre: [f64; 3]) {
+    let text: String = sph::direction::even_directions(1200)
+        .iter()
+        .map(|p| {
+            let at = |k: usize| centre[k] + axes[k] * p[k];
+            format!("{} {} {}\n", at(0), at(1), at(2))
+        })
+        .collect();
+    std::fs::write(folder.join(format!("{name}.xyz")), text).unwrap();
+    let (cloud, shape) = (format!("{name}.xyz"), format!("{name}.shape"));
+    stdout(&moduli(
+        folder,
+        &["fit", &cloud, "--degree", "8", "-o", &shape, "-q"],
+    ));
 }
