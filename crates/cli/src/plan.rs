@@ -78,4 +78,6 @@ pub(crate) struct HandPlacement {
     pub(crate) joints: Vec<f64>,
     /// Largest distance from a contact of this hand to the grasp's own, metres.
     pub(crate) contact_error: f64,
+    /// Whether the grasp's contacts are those that were looked for; else others that the hand makes.
+    pub(crate) met: bool,
 }

@@ -225,6 +225,22 @@ fn limits_of_a_transfer_are_kept_or_refused() {
 }
 
 #[test]
+fn pairs_that_would_share_a_file_are_refused() {
+    let folder = prepared();
+    let here = folder.path();
+    for name in ["a", "a-to-b"] {
+        std::fs::copy(here.join("egg.shape"), here.join(format!("{name}.shape"))).unwrap();
+    }
+    for name in ["b-to-c", "c"] {
+        std::fs::copy(here.join("ball.shape"), here.join(format!("{name}.shape"))).unwrap();
+    }
+    let arguments = "transfer --from a.shape --from a-to-b.shape --to b-to-c.shape --to c.shape \
+                     grasps.json grasps.json -o all";
+    let arguments: Vec<&str> = arguments.split_whitespace().collect();
+    refused(&moduli(here, &arguments), 2, &["a-to-b-to-c.json"]);
+}
+
+#[test]
 fn many_transfers_go_on_where_they_were_interrupted() {
     let folder = prepared();
     let here = folder.path();

@@ -180,6 +180,29 @@ fn power_grasps_have_contacts_of_more_than_tips() {
 }
 
 #[test]
+fn a_stand_off_below_the_surface_ends_in_words() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    fitted(here, "egg", [0.035, 0.030, 0.045], CENTRE);
+    let sdh = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/sdh");
+    let toml = std::fs::read_to_string(sdh.join("sdh.toml")).unwrap();
+    let below = toml.replace("standoff_m = [0.15, 0.19]", "standoff_m = [-0.05, -0.05]");
+    assert_ne!(below, toml);
+    std::fs::write(here.join("below.toml"), below).unwrap();
+    let urdf = sdh.join("sdh.urdf");
+    let hand = ["--hand", urdf.to_str().unwrap(), "--spec", "below.toml"];
+    let power = ["synthesize", "egg.shape", "--power", "--poses", "5"];
+    refused(
+        &moduli(here, &[&power[..], &hand].concat()),
+        4,
+        &["0 grasps"],
+    );
+    let whole = "grasp egg.xyz --degree 8 --poses 2 --neighbours 1 --transfers 1";
+    let whole: Vec<&str> = whole.split(' ').collect();
+    stdout(&moduli(here, &[&whole[..], &hand].concat()));
+}
+
+#[test]
 fn no_grasps_say_why() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();

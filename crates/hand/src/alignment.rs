@@ -4,7 +4,7 @@ use grasp::Contact;
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
 /// Depth under a contact of the second point that stands for its normal, metres.
-const DEPTH: f64 = 0.03;
+pub(crate) const DEPTH: f64 = 0.03;
 
 /// The motion with the least sum of squared distances of `motion * from` and `to` (Kabsch 1976).
 pub(crate) fn align(pairs: &[(Point3<f64>, Point3<f64>)]) -> Isometry3<f64> {

@@ -70,23 +70,6 @@ impl ContactSampling<'_> {
     }
 }
 
-/// As [`perturbed`], with a choice of contacts.
-///
-/// The certificate is that of the shape, [`RadialShape::radius_bounds`].
-pub fn perturbed_radial(
-    shape: &RadialShape,
-    band: Range<usize>,
-    sigma: f64,
-    contacts: &ContactSampling,
-    rng: &mut impl Rng,
-) -> Result<ModuliPoint<RadialShape>, RadialError> {
-    let noisy = perturb_band(shape.coefficients(), band, sigma, rng);
-    Ok(ModuliPoint {
-        contacts: contacts.draw(rng),
-        surface: RadialShape::new(noisy)?,
-    })
-}
-
 /// A point of M^sph × (S²)^m: noise on the same band of all three coordinates.
 ///
 /// The noisy surface is proved an immersion again ([`SphericalShape::immersion`]); a sample that is

@@ -136,6 +136,9 @@ pub enum FitError {
         /// The time.
         sigma: f64,
     },
+    /// Residuals were asked for against another cloud.
+    #[error("the cloud is not the one that was fitted")]
+    OtherCloud,
     /// Too few points remain.
     #[error(transparent)]
     Cloud(#[from] CloudError),
@@ -169,12 +172,19 @@ impl Fit {
     /// Details narrower than about √σ radians go. Residuals are those of the smoothed surface, which is
     /// proved anew; λ and the condition are those of the fit. `cloud` is the one that was fitted.
     ///
-    /// Errors: σ negative or no number; no proof that the radius stays positive.
+    /// Errors: σ negative or no number; another cloud; no proof that the radius stays positive.
     pub fn smoothed(&self, cloud: &PointCloud, sigma: f64) -> Result<Self, FitError> {
         if !(sigma.is_finite() && sigma >= 0.0) {
             return Err(FitError::Heat { sigma });
         }
+        let points = cloud.points().len();
+        if self.outliers.last().is_some_and(|last| *last >= points) {
+            return Err(FitError::OtherCloud);
+        }
         let view = View::new(cloud, &self.outliers)?;
+        if view.centre != self.centre_in_cloud {
+            return Err(FitError::OtherCloud);
+        }
         let solved = Solved {
             shape: RadialShape::new(heat_flow(self.shape.coefficients(), sigma))?,
             lambda: self.lambda,

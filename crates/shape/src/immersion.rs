@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use sph::grid::RingGrid;
 use sph::{Coefficients, Direction, SphericalCoords};
 
-use crate::normals::{NormalField, normals};
+use crate::normals::{normals, normals_at};
 
 /// Points per half wave of N on the first grid.
 const OVERSAMPLING: usize = 5;
@@ -16,7 +16,7 @@ const VANISHING: f64 = 1e-6;
 const ROUNDING: f64 = 1e-9;
 /// The proved bound is at least this part of the shortest normal seen.
 const SHARE: f64 = 0.5;
-/// Cells quartered at most, about a second; long and lean scans at L = 50 need some thirty.
+/// Cells quartered at most, a few seconds at L = 50; long and lean scans at L = 50 need some thirty.
 const MOST_CELLS: usize = 5_000;
 
 /// Points of a stencil along one axis, and of those the first corner of its cell.
@@ -102,7 +102,7 @@ pub(crate) fn certify(coordinates: &[Coefficients; 3]) -> Result<Immersion, Sphe
         (low.min(l), high.max(l))
     });
     let mut search = Search {
-        field: NormalField::new(coordinates),
+        coordinates,
         weights: Weights::new(),
         degree: degree as f64,
         // The bound of sph::bounds, for every N·d.
@@ -208,8 +208,8 @@ impl PartialEq for Cell {
 
 impl Eq for Cell {}
 
-struct Search {
-    field: NormalField,
+struct Search<'a> {
+    coordinates: &'a [Coefficients; 3],
     weights: Weights,
     degree: f64,
     /// No |N| is above this.
@@ -221,7 +221,7 @@ struct Search {
     open: BinaryHeap<Cell>,
 }
 
-impl Search {
+impl Search<'_> {
     fn first(&mut self, grid: &Grid) {
         let step = std::f64::consts::PI / grid.half as f64;
         for i in 0..grid.half {
@@ -325,12 +325,10 @@ impl Search {
         const WIDE: usize = STENCIL + 1;
         let step = 0.5 * cell.step;
         let angle = |start: f64, k: usize| start + step * (k as f64 - CORNER as f64);
-        let patch: Vec<Vector3<f64>> = (0..WIDE * WIDE)
-            .map(|k| {
-                let p = direction(angle(cell.theta, k / WIDE), angle(cell.phi, k % WIDE));
-                self.field.at(&p)
-            })
+        let places: Vec<Direction> = (0..WIDE * WIDE)
+            .map(|k| direction(angle(cell.theta, k / WIDE), angle(cell.phi, k % WIDE)))
             .collect();
+        let patch = normals_at(self.coordinates, &places);
         for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let at = |a: usize, b: usize| patch[(a + i) * WIDE + b + j];
             let (theta, phi) = (cell.theta + step * i as f64, cell.phi + step * j as f64);

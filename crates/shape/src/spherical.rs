@@ -26,7 +26,8 @@ pub struct SphericalShape {
 impl SphericalShape {
     /// Proves that f_u × f_v vanishes nowhere ([`Immersion`]) and computes the mass properties.
     ///
-    /// Degrees may differ; all are filled up to the highest. Less than a second at L = 50.
+    /// Degrees may differ; all are filled up to the highest. Usually less than a second at L = 50; some seconds where it
+    /// gives up.
     pub fn new(x: Coefficients, y: Coefficients, z: Coefficients) -> Result<Self, SphericalError> {
         let degree = x.degree().max(y.degree()).max(z.degree());
         let coordinates = [x, y, z].map(|c| c.with_degree(degree));

@@ -16,11 +16,11 @@ use crate::point_cloud::RadialSamples;
 use crate::star::LEAST_GAP;
 
 /// Openings of a smaller share of the sphere than this are holes of a scan.
-pub const LEAST_OPENING: f64 = 0.05;
+const LEAST_OPENING: f64 = 0.05;
 /// An opening of a larger share than this is wider than what a scan from all sides leaves below an
 /// object on a table, unless that is as flat as a bowl upside down; half a hollow ball, seen from its
 /// mean, has 0.25.
-pub const WIDE_OPENING: f64 = 0.2;
+const WIDE_OPENING: f64 = 0.2;
 
 /// Directions tried as the middle of the opening.
 const AXES: usize = 300;
@@ -71,7 +71,7 @@ pub enum Vessel {
     SeenFromAllSides,
 }
 
-/// The widest opening of at least [`LEAST_OPENING`], if any, and whether it is a mouth.
+/// The widest opening of at least `LEAST_OPENING`, if any, and whether it is a mouth.
 ///
 /// About N operations where there is none, some 300 N otherwise.
 pub(crate) fn opening(samples: &RadialSamples) -> Option<Opening> {

@@ -41,6 +41,9 @@ fn heat_takes_details_keeps_the_mean_and_measures_residuals_anew() {
         fitted.rms
     );
     assert_eq!(smooth.centre_in_cloud, fitted.centre_in_cloud);
+    let other = PointCloud::new(cloud.points()[..500].to_vec()).unwrap();
+    let refused = fitted.smoothed(&other, 0.01);
+    assert!(matches!(refused, Err(FitError::OtherCloud)));
     for wrong in [-0.1, f64::NAN, f64::INFINITY] {
         let refused = fitted.smoothed(&cloud, wrong);
         assert!(matches!(refused, Err(FitError::Heat { .. })), "{wrong}");

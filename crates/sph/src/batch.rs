@@ -182,10 +182,10 @@ fn turn(re: &mut Lane, im: &mut Lane, x: &Lane, y: &Lane) {
     }
 }
 
-/// x, y, z of up to LANES points; missing points stand at the pole.
+/// x, y, z of up to N points; missing points stand at the pole.
 #[inline(always)]
-fn lanes(points: &[Direction]) -> [Lane; 3] {
-    let mut out = [[0.0; LANES], [0.0; LANES], [1.0; LANES]];
+fn lanes<const N: usize>(points: &[Direction]) -> [[f64; N]; 3] {
+    let mut out = [[0.0; N], [0.0; N], [1.0; N]];
     for (k, p) in points.iter().enumerate() {
         out[0][k] = p.x;
         out[1][k] = p.y;

@@ -37,7 +37,8 @@ pub enum Method {
     Automatic,
     /// Preconditioned conjugate gradients on the Gram operator: O(L³) an iteration, no matrix. Where
     /// the matrix of harmonics has a condition beyond some thousands it gives up with
-    /// [`RegressionError::NotConverged`]; a factor still serves there.
+    /// [`RegressionError::NotConverged`]; a factor serves there, and beyond
+    /// cond(Y) ≈ 1e4, where corrections no longer settle, [`Method::Qr`].
     Conjugate,
     /// The dense factor of the Gram matrix: O(L⁶) flops, 16 (L+1)⁴ bytes.
     Cholesky,

@@ -32,7 +32,10 @@ struct GraspLine {
     neighbours: Vec<String>,
     transferred: usize,
     transferred_closed: usize,
+    /// With a hand, whether it meets the contacts or makes others near them.
     transferred_with_hand: usize,
+    /// Of these, those whose contacts the hand meets.
+    transferred_met: usize,
     /// Transferred grasps with another number of contacts than the hand has fingers.
     transferred_of_other_count: usize,
     poses: usize,
@@ -79,7 +82,8 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
     let found = synthesize(&target, &hand, &request, &bar)?;
     bar.finish_and_clear();
 
-    let reached = carried.kept.iter().filter(|c| c.hand.is_some()).count();
+    let held = || carried.kept.iter().filter_map(|c| c.hand.as_ref());
+    let (with_hand, met) = (held().count(), held().filter(|h| h.met).count());
     let mut candidates = carried.kept.clone();
     candidates.extend(synthesis::candidates(&found, options.keep));
     let ranked = ranking::rank(candidates);
@@ -104,7 +108,8 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
         neighbours: carried.neighbours,
         transferred: carried.all,
         transferred_closed: carried.closed,
-        transferred_with_hand: reached,
+        transferred_with_hand: with_hand,
+        transferred_met: met,
         transferred_of_other_count: carried.of_other_count,
         poses: options.poses,
         synthesized: found.outcomes.stable,
@@ -223,8 +228,12 @@ impl GraspLine {
             self.neighbours.join(", ")
         ));
         output::say(format!(
-            "{} of {} transferred grasps are force-closed, the hand {} reaches {}; {synthesis}",
-            self.transferred_closed, self.transferred, self.hand, self.transferred_with_hand,
+            "{} of {} transferred grasps are force-closed; the hand {} meets the contacts of {} and makes grasps near those of {} more; {synthesis}",
+            self.transferred_closed,
+            self.transferred,
+            self.hand,
+            self.transferred_met,
+            self.transferred_with_hand - self.transferred_met,
         ));
         if self.transferred_of_other_count > 0 {
             output::say(format!(

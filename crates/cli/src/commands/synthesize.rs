@@ -14,9 +14,9 @@ use crate::plan::synthesis::{self, Request, reasons, sentence};
 use crate::plan::{Fitted, Target, ranking};
 use crate::{hands, input, output};
 
-/// Power grasps begin at this part of the least stand-off of grasps with the tips; the palm may touch
-/// no nearer than its clearance, and from farther away only tips arrive.
-const POWER_STANDOFF: f64 = 0.7;
+/// Power grasps begin nearer than the least stand-off of grasps with the tips, by up to this share of
+/// it: from farther away only tips arrive.
+const POWER_NEARER: f64 = 0.3;
 
 #[derive(Serialize)]
 struct SynthesizeLine<'a> {
@@ -110,7 +110,9 @@ fn request(options: &SynthesizeOptions, common: &Common, hand: &Hand) -> Result<
         preshapes = (0..hand.preshapes().len()).collect();
     }
     let (least, _) = hand.standoff();
-    let nearer = options.power.then_some((POWER_STANDOFF * least, least));
+    let nearer = options
+        .power
+        .then_some((least - POWER_NEARER * least.abs(), least));
     Ok(Request {
         poses: options.poses,
         preshapes,

@@ -83,6 +83,7 @@ fn settle_for(
         candidate.contacts.clone_from(&found.reached.contacts);
         candidate.hand = Some(HandPlacement {
             contact_error: 0.0,
+            met: false,
             ..placement(found.reached)
         });
     }
@@ -94,5 +95,6 @@ fn placement(found: Reached) -> HandPlacement {
         object_from_palm: found.object_from_palm,
         joints: found.joints,
         contact_error: found.position_error,
+        met: true,
     }
 }

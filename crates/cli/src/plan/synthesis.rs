@@ -82,6 +82,7 @@ pub(crate) fn candidates(synthesis: &Synthesis, count: usize) -> Vec<Candidate> 
                 object_from_palm: grasp.object_from_palm,
                 joints: grasp.joints.clone(),
                 contact_error: 0.0,
+                met: true,
             }),
         })
         .collect()

@@ -8,12 +8,10 @@ use rand::{Rng, RngExt};
 
 use super::HandState;
 use super::problem::{Problem, state};
-use crate::alignment::align;
+use crate::alignment::{DEPTH, align, contact_points};
 
 /// Half-closed hands among which a start is chosen.
 const SHAPES: usize = 24;
-/// Depth of the second point that stands for the direction of a pad or normal, metres.
-const DEPTH: f64 = 0.03;
 
 /// A pose and joints near the contacts, and which finger is to hold each.
 pub(super) struct Start {
@@ -36,15 +34,7 @@ impl Problem<'_> {
         orders: &[Vec<usize>],
         rng: &mut R,
     ) -> Start {
-        let targets: Vec<_> = wanted
-            .iter()
-            .map(|c| {
-                [
-                    c.position,
-                    c.position + c.inward_normal.into_inner() * DEPTH,
-                ]
-            })
-            .collect();
+        let targets: Vec<_> = wanted.iter().map(contact_points).collect();
         let mut best = (f64::INFINITY, self.fist(rng), &orders[0]);
         for _ in 1..SHAPES {
             let fist = self.fist(rng);
@@ -97,7 +87,7 @@ impl Problem<'_> {
         let from = from.unwrap_or(Vector3::z_axis());
         let roll = rng.random_range(0.0..TAU);
         let (low, high) = hand.standoff;
-        let distance = rng.random_range(0.8 * low..=1.1 * high);
+        let distance = rng.random_range(low - 0.2 * low.abs()..=high + 0.1 * high.abs());
         let mut pose = crate::pose_sampling::aimed(hand, &from, distance, roll);
         pose.translation.vector += centre;
         let preshape = &hand.preshapes[rng.random_range(0..hand.preshapes.len())];

@@ -56,6 +56,12 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         start: Vec<Direction>,
     ) -> Result<Self, QualityError> {
         let value = quality.value(surface, &start)?;
+        // What is no number is worse than any: whatever a later climb finds replaces it.
+        let value = if value.is_nan() {
+            f64::NEG_INFINITY
+        } else {
+            value
+        };
         let mut climber = Self {
             surface,
             quality,
@@ -153,6 +159,9 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
     /// The slope that is left here, at one ρ for all grasps, by the facets of this place alone.
     pub(super) fn stationarity(&mut self) -> f64 {
         self.pieces.truncate(self.own);
+        if self.pieces.is_empty() {
+            return 0.0;
+        }
         self.bundle
             .solve(&self.pieces, &self.limits, REPORT_RHO, f64::INFINITY)
             .slope

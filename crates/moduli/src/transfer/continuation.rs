@@ -285,7 +285,9 @@ impl<Q: Quality<RadialField>, F: FnMut(&RadialField) -> Q> Carrier<'_, F> {
         let there = self.climb(t, station, &here.ascent.contacts, keep)?;
         let lost = there.margin < splitting.least_kept * here.ascent.quality;
         let farthest = farthest(&here.ascent.contacts, &there.contacts);
-        if depth < splitting.depth && (lost || farthest > splitting.longest_move) {
+        // On a station where nothing near keeps the limits, halves would be no better.
+        let kept_out = there.margin == f64::NEG_INFINITY;
+        if depth < splitting.depth && !kept_out && (lost || farthest > splitting.longest_move) {
             let middle = 0.5 * (here.t + t);
             let halfway = RadialField::deformation(self.transfer.from, self.transfer.to, middle)?;
             let here = self.advance(here, middle, &halfway, depth + 1, trace)?;
@@ -301,7 +303,7 @@ impl<Q: Quality<RadialField>, F: FnMut(&RadialField) -> Q> Carrier<'_, F> {
                 },
             );
         }
-        if here.ascent.quality > 0.0 && there.quality <= 0.0 {
+        if !kept_out && here.ascent.quality > 0.0 && there.quality <= 0.0 {
             self.lost_at.get_or_insert(t);
         }
         Ok(Standing { t, ascent: there })

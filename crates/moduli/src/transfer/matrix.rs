@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_keeps_what_was_done_and_is_that_of_the_first_job() {
+    fn an_error_keeps_what_was_done() {
         let mut results = vec![Some(7)];
         let failed = run_jobs(
             &[1, 2, 3],

@@ -8,6 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
+use super::lanes;
 use crate::basis::{Ambient, Harmonic, Jet};
 use crate::coefficients::Coefficients;
 use crate::direction::{Direction, project_tangent};
@@ -104,9 +105,7 @@ impl<const PARTS: usize> WithSimd for Sums<'_, PARTS> {
             .chunks(LANES)
             .zip(self.out.chunks_mut(LANES))
         {
-            let at = |k: usize, axis: usize| points.get(k).map_or(0.0, |p| p[axis]);
-            let [x, y, z]: [Lane; 3] =
-                std::array::from_fn(|axis| std::array::from_fn(|k| at(k, axis)));
+            let [x, y, z] = lanes(points);
             let mut powers = [[[0.0; LANES]; 2]; 3];
             powers[0][0] = [1.0; LANES];
             let mut totals = [[0.0; LANES]; TERMS];

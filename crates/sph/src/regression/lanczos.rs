@@ -28,7 +28,7 @@ impl Lanczos {
         if self.diagonal.is_empty() {
             return 1.0;
         }
-        // The trace bounds the largest from above; every diagonal entry is at least the smallest.
+        // By Gershgorin's circles none is above 1.5 `most`; every diagonal entry is at least the smallest.
         let largest = self.bisect(least, 2.0 * most, |below| below < self.diagonal.len());
         let smallest = self.bisect(1e-18 * least, least, |below| below == 0);
         largest / smallest

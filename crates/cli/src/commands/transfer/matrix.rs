@@ -79,6 +79,13 @@ pub(super) fn run(options: &TransferOptions, common: &Common) -> Result<(), Fail
     let sources = sources(options)?;
     let targets = distinct(&options.to)?;
     let pairs = pairs(&sources, &targets, folder, options, &convention);
+    let mut files = BTreeSet::new();
+    if let Some(twice) = pairs.iter().find(|pair| !files.insert(&pair.file)) {
+        return Err(Failure::usage(format!(
+            "two pairs of shapes would be written to {}; rename one",
+            twice.file.display()
+        )));
+    }
     if pairs.is_empty() {
         return Err(Failure::usage("--from and --to name the same shape alone"));
     }
