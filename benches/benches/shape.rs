@@ -1,7 +1,7 @@
 //! Shapes: certificate, mesh, differential at a point.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use shape::{RadialShape, Surface, space};
+use shape::{RadialShape, Surface, algebra};
 use sph::direction::even_directions;
 use sph::{Coefficients, index};
 
@@ -36,7 +36,7 @@ fn bench(criterion: &mut Criterion) {
         bencher.iter(|| a.mesh(100, 100))
     });
     criterion.bench_function("shape/deformation L=50", |bencher| {
-        bencher.iter(|| space::deformation(&a, &b, 0.3))
+        bencher.iter(|| algebra::deformation(&a, &b, 0.3))
     });
 }
 

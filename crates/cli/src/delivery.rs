@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use moduli::Objective;
 use rayon::prelude::*;
 use record::grasps::ConventionRecord;
 use serde::Serialize;
+use space::Objective;
 
 use crate::args::{Common, MoveOptions};
 use crate::failure::Failure;

@@ -1,7 +1,7 @@
 //! Limits of a grasp from the command line.
 
-use moduli::{Cap, Constraints, Objective};
 use nalgebra::Vector3;
+use space::{Cap, Constraints, Objective};
 use sph::Direction;
 
 use crate::args::LimitOptions;

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use moduli::point::contacts_on;
-use moduli::{Objective, Step};
 use nalgebra::{Point3, Vector3};
 use record::grasps::{ConventionRecord, GRASPS_VERSION, ObjectRecord, SourceRecord};
 use record::{GraspRecord, GraspsFile, ShapeRecord};
 use serde::Serialize;
 use shape::{RadialField, Surface};
+use space::point::contacts_on;
+use space::{Objective, Step};
 use sph::Direction;
 use sph::direction::direction_and_radius;
 

@@ -10,8 +10,8 @@ pub(crate) mod synthesis;
 pub(crate) mod transfer;
 
 use grasp::{Contact, Convention};
-use moduli::Objective;
 use nalgebra::{Isometry3, Point3};
+use space::Objective;
 
 pub(crate) use fitted::Fitted;
 

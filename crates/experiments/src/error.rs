@@ -73,10 +73,10 @@ pub enum ExperimentError {
     Quality(#[from] grasp::QualityError),
     /// Shapes could not be combined.
     #[error(transparent)]
-    Space(#[from] shape::space::SpaceError),
+    Space(#[from] shape::algebra::SpaceError),
     /// A transfer failed.
     #[error(transparent)]
-    Transfer(#[from] moduli::TransferError),
+    Transfer(#[from] space::TransferError),
     /// A result could not be written.
     #[error("cannot write {path}: {reason}")]
     Output {

@@ -13,10 +13,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::Instant;
 
-use moduli::transfer::{Progress, run_jobs};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+use space::transfer::{Progress, run_jobs};
 use sph::Direction;
 
 use crate::error::ExperimentError;

@@ -4,11 +4,11 @@ use grasp::Convention;
 use hand::{
     ClosingRules, CollisionObject, Hand, HandGrasp, PoseSampling, Synthesis, SynthesisParams,
 };
-use moduli::Objective;
 use nalgebra::Point3;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use shape::{Fit, FitSettings, RadialField, RadialShape};
+use space::Objective;
 use sph::Direction;
 
 use crate::error::ExperimentError;

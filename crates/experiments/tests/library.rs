@@ -4,7 +4,7 @@ use experiments::library::{LibrarySettings, build};
 use grasp::Convention;
 use record::{LibraryEntry, LibraryRecord};
 
-const STORED: &[u8] = include_bytes!("../../../fixtures/library.bin");
+const STORED: &[u8] = fixtures::LIBRARY;
 
 /// Last digits differ between processors: other vector units sum in another order.
 const RELATIVE: f64 = 1e-6;
@@ -85,7 +85,7 @@ fn the_stored_library_is_usable_and_its_grasps_are_spread_out() {
         let contacts: Vec<_> = entry
             .grasps
             .iter()
-            .map(|g| moduli::point::contacts_on(&shape, &g.directions().unwrap()))
+            .map(|g| space::point::contacts_on(&shape, &g.directions().unwrap()))
             .collect();
         for (k, a) in contacts.iter().enumerate() {
             for b in &contacts[..k] {

@@ -10,8 +10,8 @@ use experiments::sections::{
 };
 use experiments::{ExperimentError, paper};
 use grasp::Convention;
-use moduli::PaperTransfer;
 use serde_json::{Value, json};
+use space::PaperTransfer;
 
 const NUMBERS: [usize; 3] = [5, 8, 11];
 

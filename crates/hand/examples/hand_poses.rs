@@ -11,14 +11,14 @@ use grasp::Convention;
 use hand::{
     ClosingRules, CollisionObject, Hand, PoseSampling, SynthesisParams, schunk_sdh, synthesize,
 };
-use moduli::Objective;
 use nalgebra::Point3;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use record::LibraryRecord;
 use shape::{FitSettings, PointCloud, RadialShape};
+use space::Objective;
 
-const LIBRARY: &[u8] = include_bytes!("../../../fixtures/library.bin");
+const LIBRARY: &[u8] = fixtures::LIBRARY;
 const POSES: usize = 1400;
 
 fn main() -> Result<(), Box<dyn Error>> {

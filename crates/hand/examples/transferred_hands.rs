@@ -1,7 +1,7 @@
 //! How many transferred and improved grasps of the built-in catalogue a hand can make.
 //!
 //! On each of the twelve objects the SDH closes from 1,400 poses; its ten best grasps there are
-//! carried to the eleven others and improved (`moduli::Continuation`), and a hand pose is sought
+//! carried to the eleven others and improved (`space::Continuation`), and a hand pose is sought
 //! for each: 1,320 in all. "Reached": tips within 2 mm of the wanted contacts, normals within the
 //! friction cone, every clearance kept. "Improved": no such hand was found, so the best grasp that
 //! the hand makes near those contacts was sought, and it is no worse than the naive transfer and
@@ -17,19 +17,19 @@ use hand::{
     ClosingRules, CollisionObject, Hand, HandGrasp, HandState, ImproveParams, PoseSampling,
     ReachOutcome, ReachParams, Reacher, SynthesisParams, carried_pose, schunk_sdh, synthesize,
 };
-use moduli::Continuation;
-use moduli::point::contacts_on;
-use moduli::transfer::{Job, Transfer, all_pairs};
 use nalgebra::Point3;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rayon::prelude::*;
 use record::LibraryRecord;
 use shape::RadialField;
+use space::Continuation;
+use space::point::contacts_on;
+use space::transfer::{Job, Transfer, all_pairs};
 
 type Failure = Box<dyn Error + Send + Sync>;
 
-const LIBRARY: &[u8] = include_bytes!("../../../fixtures/library.bin");
+const LIBRARY: &[u8] = fixtures::LIBRARY;
 const BEST: usize = 10;
 const LEAST_QUALITY: f64 = 0.01;
 const SEED: u64 = 2014;

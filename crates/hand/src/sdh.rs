@@ -7,9 +7,9 @@ use crate::hand_spec::{HandSpec, SpecTextError};
 use crate::urdf::{UrdfError, load_urdf};
 
 /// The URDF of the built-in hand.
-pub const SDH_URDF: &str = include_str!("../../../fixtures/sdh/sdh.urdf");
+pub const SDH_URDF: &str = fixtures::SDH_URDF;
 /// The spec of the built-in hand.
-pub const SDH_SPEC: &str = include_str!("../../../fixtures/sdh/sdh.toml");
+pub const SDH_SPEC: &str = fixtures::SDH_SPEC;
 
 /// Why a hand could not be had from its two texts.
 #[derive(Debug, Clone, PartialEq, Error)]

@@ -88,7 +88,7 @@ fn contacts_are_the_closest_points_and_carry_the_smooth_normals() {
 /// Three real scans if there are any, else the shapes of three objects of the built-in library.
 fn scanned_surfaces() -> Vec<RadialShape> {
     let Some(root) = std::env::var_os("MODULI_DATA") else {
-        let bytes = include_bytes!("../../../fixtures/library.bin");
+        let bytes = fixtures::LIBRARY;
         let library = record::LibraryRecord::from_bytes(bytes).unwrap();
         let entries = [3, 7, 10].map(|k| library.entries[k].shape.shape().unwrap());
         return entries.into();

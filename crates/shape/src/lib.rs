@@ -3,6 +3,7 @@
 //! Surfaces live in a centred frame, whose origin is the mean of the cloud (Sec. IV-A of the
 //! paper); [`fit::Fit`] keeps the way back to the frame of the cloud.
 
+pub mod algebra;
 mod cells;
 pub mod embedding;
 pub mod fit;
@@ -17,7 +18,6 @@ pub mod point_cloud;
 pub mod radial;
 mod radial_field;
 mod rotation_field;
-pub mod space;
 mod spherical;
 mod spherical_fit;
 pub mod star;

@@ -4,8 +4,8 @@ use nalgebra::{Point3, UnitVector3};
 use sph::Direction;
 use sph::field::Field;
 
+use crate::algebra::{SpaceError, deformation};
 use crate::radial::{RadialShape, contact_of, differential_of};
-use crate::space::{SpaceError, deformation};
 use crate::surface::{Differential, Surface};
 
 /// A [`RadialShape`] whose r, ∇r and ∇²r come from a [`Field`] instead of a sum of (L+1)² terms.

@@ -5,7 +5,7 @@ mod common;
 use common::{assert_differentials_agree_with_differences, pebble};
 use nalgebra::{Matrix3, Point3, Vector3};
 use proptest::prelude::*;
-use shape::{RadialShape, Surface, TriangleMesh, space};
+use shape::{RadialShape, Surface, TriangleMesh, algebra};
 use sph::Coefficients;
 use sph::direction::even_directions;
 use sph::grid::RingGrid;
@@ -61,7 +61,7 @@ proptest! {
     /// Lemma 3.2 of the paper: M^rad is convex, and what is inherited is true.
     #[test]
     fn convex_combinations_stay_inside(a in shapes(), b in shapes(), t in 0.0_f64..=1.0) {
-        let between = space::deformation(&a, &b, t).unwrap();
+        let between = algebra::deformation(&a, &b, t).unwrap();
         let (low, high) = between.radius_bounds();
         prop_assert!(low > 0.0);
         prop_assert!(low >= (1.0 - t) * a.radius_bounds().0 + t * b.radius_bounds().0 - 1e-15);
@@ -83,7 +83,7 @@ proptest! {
         let mut weights: Vec<f64> = parts.iter().map(|p| p.1).collect();
         weights[0] = first;
         let members: Vec<&RadialShape> = parts.iter().map(|p| &p.0).collect();
-        let sum = space::cone(&weights, &members).unwrap();
+        let sum = algebra::cone(&weights, &members).unwrap();
         let (low, high) = sum.radius_bounds();
         prop_assert!(low > 0.0);
         let certified = RadialShape::new(sum.coefficients().clone()).unwrap();
@@ -95,10 +95,10 @@ proptest! {
 
     #[test]
     fn weights_outside_the_cone_are_refused(a in shapes(), b in shapes(), w in -5.0_f64..-1e-9) {
-        prop_assert!(space::cone(&[1.0, w], &[&a, &b]).is_err());
-        prop_assert!(space::cone(&[f64::NAN, 1.0], &[&a, &b]).is_err());
-        prop_assert!(space::cone(&[0.0, 0.0], &[&a, &b]).is_err());
-        prop_assert!(space::convex_combination(&[0.5, 0.6], &[&a, &b]).is_err());
+        prop_assert!(algebra::cone(&[1.0, w], &[&a, &b]).is_err());
+        prop_assert!(algebra::cone(&[f64::NAN, 1.0], &[&a, &b]).is_err());
+        prop_assert!(algebra::cone(&[0.0, 0.0], &[&a, &b]).is_err());
+        prop_assert!(algebra::convex_combination(&[0.5, 0.6], &[&a, &b]).is_err());
     }
 
     /// (∫|r₁−r₂|²)^½ by quadrature is ‖β₁−β₂‖ (Sec. III-B).
@@ -115,17 +115,17 @@ proptest! {
             .enumerate()
             .map(|(i, (x, y))| grid.weights()[i / grid.longitudes()] * cell * (x - y).powi(2))
             .sum();
-        let distance = space::distance(&a, &b);
+        let distance = algebra::distance(&a, &b);
         prop_assert!((square.sqrt() - distance).abs() <= 1e-12 * (1.0 + distance));
-        prop_assert_eq!(distance, space::distance(&b, &a));
+        prop_assert_eq!(distance, algebra::distance(&b, &a));
     }
 
     /// γ is a geodesic: distances along it add up.
     #[test]
     fn deformations_are_straight(a in shapes(), b in shapes(), s in 0.0_f64..1.0, t in 0.0_f64..1.0) {
-        let at = |t| space::deformation(&a, &b, t).unwrap();
-        let found = space::distance(&at(s), &at(t));
-        prop_assert!((found - (s - t).abs() * space::distance(&a, &b)).abs() <= 1e-13);
+        let at = |t| algebra::deformation(&a, &b, t).unwrap();
+        let found = algebra::distance(&at(s), &at(t));
+        prop_assert!((found - (s - t).abs() * algebra::distance(&a, &b)).abs() <= 1e-13);
     }
 }
 

@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use moduli::point::contacts_on;
-use moduli::{AscentError, Constraints, MonotoneAscent, Objective, PaperAscent, Step};
 use nalgebra::Vector3;
 use shape::RadialField;
+use space::point::contacts_on;
+use space::{AscentError, Constraints, MonotoneAscent, Objective, PaperAscent, Step};
 use sph::Direction;
 
 use crate::args::{AscendOptions, AscentScheme, Common};

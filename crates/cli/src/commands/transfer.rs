@@ -5,13 +5,13 @@ mod matrix;
 use std::path::Path;
 use std::time::Instant;
 
-use moduli::transfer::Transfer;
-use moduli::{
+use record::grasps::SourceRecord;
+use shape::{RadialField, Surface, algebra};
+use space::transfer::Transfer;
+use space::{
     Constraints, Continuation, Objective, PaperAscent, PaperTransfer, Step, TransferError,
     Transferred,
 };
-use record::grasps::SourceRecord;
-use shape::{RadialField, Surface, space};
 
 use crate::args::{Common, TransferOptions, TransferScheme};
 use crate::commands::ascend::PAPER_ASCENT;
@@ -120,7 +120,7 @@ fn prepare(
 }
 
 fn source(from: &Object, to: &Object) -> SourceRecord {
-    let distance = space::distance(from.surface.shape(), to.surface.shape());
+    let distance = algebra::distance(from.surface.shape(), to.surface.shape());
     SourceRecord {
         kind: "transfer".to_owned(),
         from: Some(from.record.name.clone()),

@@ -5,7 +5,7 @@ use record::LibraryRecord;
 use crate::failure::Failure;
 
 /// Built by `build_library` from the catalogue; see fixtures/PROVENANCE.md.
-const BYTES: &[u8] = include_bytes!("../../../../fixtures/library.bin");
+const BYTES: &[u8] = fixtures::LIBRARY;
 
 /// The library inside the program.
 pub(crate) fn built_in() -> Result<LibraryRecord, Failure> {

@@ -2,12 +2,12 @@
 
 use hand::{HandState, carried_pose};
 use indicatif::ProgressBar;
-use moduli::Continuation;
-use moduli::point::contacts_on;
-use moduli::transfer::Transfer;
 use rayon::prelude::*;
 use record::{LibraryEntry, LibraryGrasp, LibraryRecord};
 use shape::RadialField;
+use space::Continuation;
+use space::point::contacts_on;
+use space::transfer::Transfer;
 use sph::Direction;
 
 use super::{Candidate, Source, Target};
@@ -98,7 +98,7 @@ fn carry(
     grasp: &LibraryGrasp,
     directions: &[Direction],
 ) -> Result<Candidate, Failure> {
-    let failed = |e: moduli::TransferError| {
+    let failed = |e: space::TransferError| {
         Failure::refused(format!("transfer from {}: {e}", neighbour.entry.id))
     };
     let transfer = Transfer {

@@ -1,8 +1,8 @@
 //! Fig. 5: random shapes with random contacts.
 
-use moduli::ModuliPoint;
 use report::{Block, SceneGrid, Section};
 use shape::RadialShape;
+use space::ModuliPoint;
 
 use super::section;
 use super::surfaces::grasp_cell;

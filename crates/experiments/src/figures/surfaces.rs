@@ -1,9 +1,9 @@
 //! Surfaces, clouds and contacts as items of a scene, in millimetres.
 
-use moduli::point::contacts_on;
 use nalgebra::{Point3, Vector3};
 use report::{Arrows, Item, Lines, Mesh, Points, SceneCell, Surface};
 use shape::{PointCloud, RadialShape, Surface as _};
+use space::point::contacts_on;
 use sph::{Coefficients, Direction, batch};
 
 /// Circles of latitude and points a circle of a drawn mesh.

@@ -1,9 +1,9 @@
 //! Fig. 7, Fig. 8 and Sec. IV-D: the paper's ascent and ours from the grasps of G_i.
 
 use hand::HandGrasp;
-use moduli::{MonotoneAscent, PaperAscent};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use space::{MonotoneAscent, PaperAscent};
 use sph::Direction;
 
 use crate::error::ExperimentError;
@@ -289,7 +289,7 @@ fn draw<'a>(
     let mut objective = fitted.objective(&run.convention);
     let mut states = Vec::new();
     let mut count = 0;
-    let keep = |step: &moduli::Step| {
+    let keep = |step: &space::Step| {
         if count % 10 == 0 {
             states.push(step.contacts.to_vec());
         }

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use moduli::sample::perturbed;
 use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::json;
+use space::sample::perturbed;
 use sph::{Coefficients, index};
 
 use crate::error::ExperimentError;
@@ -150,7 +150,7 @@ fn draw(
     let quality = match &point {
         Some(point) => {
             let origin = object.object_origin();
-            moduli::Objective::new(&run.convention, &point.surface, &origin)
+            space::Objective::new(&run.convention, &point.surface, &origin)
                 .quality_at(&point.surface, &point.contacts)?
         }
         None => 0.0,

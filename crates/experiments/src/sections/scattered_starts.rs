@@ -4,11 +4,11 @@
 //! transfer and keep the best end. A transfer that does not get stuck is as good as that.
 
 use hand::HandGrasp;
-use moduli::sample::ContactSampling;
-use moduli::{Continuation, PaperAscent};
 use rand::seq::index;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use space::sample::ContactSampling;
+use space::{Continuation, PaperAscent};
 use sph::Direction;
 
 use crate::error::ExperimentError;

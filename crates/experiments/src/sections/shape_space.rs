@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::json;
 use shape::embedding::{Embedding, classical_scaling};
-use shape::{PointCloud, RadialShape, space};
+use shape::{PointCloud, RadialShape, algebra};
 use sph::Coefficients;
 
 use crate::error::ExperimentError;
@@ -192,14 +192,14 @@ fn deformations(
         for step in 1..steps {
             let t = step as f64 / steps as f64;
             let label = format!("{}→{} at {t:.2}", from.id(), to.id());
-            shapes.push((label, space::deformation(from.shape(), to.shape(), t)?));
+            shapes.push((label, algebra::deformation(from.shape(), to.shape(), t)?));
         }
     }
     Ok(shapes)
 }
 
 fn distances(shapes: &[&RadialShape]) -> Vec<Vec<f64>> {
-    let row = |a: &&RadialShape| shapes.iter().map(|b| space::distance(a, b)).collect();
+    let row = |a: &&RadialShape| shapes.iter().map(|b| algebra::distance(a, b)).collect();
     shapes.par_iter().map(row).collect()
 }
 

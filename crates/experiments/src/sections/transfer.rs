@@ -1,10 +1,10 @@
 //! Fig. 9 and Sec. IV-E: grasps carried from every object to every other.
 
 use hand::HandGrasp;
-use moduli::transfer::Transfer;
-use moduli::{Continuation, PaperTransfer};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use space::transfer::Transfer;
+use space::{Continuation, PaperTransfer};
 use sph::Direction;
 
 use crate::error::ExperimentError;
@@ -268,7 +268,7 @@ fn drawn(
     let transfer = transfer_between(run, from, to);
     let shapes = plan.transfer.stations(&transfer)?;
     let mut ends: Vec<(f64, Vec<Direction>, f64)> = Vec::new();
-    let keep = |t: f64, step: &moduli::Step| {
+    let keep = |t: f64, step: &space::Step| {
         let state = (t, step.contacts.to_vec(), step.quality);
         match ends.last_mut() {
             Some(last) if last.0 == t => *last = state,

@@ -8,13 +8,13 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use grasp::Convention;
-use moduli::Objective;
-use moduli::transfer::{Transfer, run_jobs};
 use rayon::prelude::*;
 use record::GraspsFile;
 use record::envelope::checksum;
 use serde::Serialize;
 use serde_json::json;
+use space::Objective;
+use space::transfer::{Transfer, run_jobs};
 
 use super::{carry, failed, prepare, scheme_name, source};
 use crate::args::{Common, TransferOptions};

@@ -1,7 +1,7 @@
 //! The curve γ = (u, v) between two points of the moduli space (Sec. III-C).
 
 use shape::RadialShape;
-use shape::space::{SpaceError, deformation};
+use shape::algebra::{SpaceError, deformation};
 use sph::Direction;
 use sph::direction::geodesic;
 

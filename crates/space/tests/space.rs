@@ -1,13 +1,13 @@
 //! Metrics, curves and samples of the moduli space.
 
 use grasp::Grasp;
-use moduli::sample::{perturbed, uniform_direction};
-use moduli::{MetricError, ModuliPoint, Path, metric};
 use nalgebra::Point3;
 use proptest::prelude::*;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use shape::{RadialShape, Surface};
+use space::sample::{perturbed, uniform_direction};
+use space::{MetricError, ModuliPoint, Path, metric};
 use sph::Coefficients;
 use sph::direction::{angle, even_directions};
 

@@ -2,9 +2,9 @@
 #![allow(unsafe_code, reason = "counting allocations takes a global allocator")]
 
 use grasp::Convention;
-use moduli::{Cap, Constraints, MonotoneAscent, Objective};
 use nalgebra::{Point3, Vector3};
 use shape::{RadialField, RadialShape};
+use space::{Cap, Constraints, MonotoneAscent, Objective};
 use sph::{Coefficients, Direction, SphericalCoords, index};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

@@ -1,10 +1,10 @@
 //! The paper's ascent and transfer.
 
 use grasp::Convention;
-use moduli::transfer::Transfer;
-use moduli::{Objective, PaperAscent, PaperTransfer};
 use nalgebra::{Point3, Vector3};
 use shape::{RadialField, RadialShape};
+use space::transfer::Transfer;
+use space::{Objective, PaperAscent, PaperTransfer};
 use sph::direction::{angle, retract};
 use sph::{Coefficients, Direction, SphericalCoords};
 

@@ -4,14 +4,14 @@ mod common;
 
 use common::{closed_start, lumpy, paper};
 use grasp::{Convention, Edges, FrameRule, Gradient};
-use moduli::point::contacts_on;
-use moduli::sample::uniform_direction;
-use moduli::{MonotoneAscent, Objective, PaperAscent};
 use nalgebra::{Point3, Vector3};
 use proptest::prelude::*;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use shape::{RadialField, Surface};
+use space::point::contacts_on;
+use space::sample::uniform_direction;
+use space::{MonotoneAscent, Objective, PaperAscent};
 use sph::Direction;
 use sph::direction::{retract, tangent_frame};
 
@@ -139,14 +139,14 @@ fn our_transfer_is_never_below_the_naive_one() {
     let convention = paper();
     for seed in 0..6 {
         let (from, to) = [lumpy(seed), lumpy(seed + 50)].map(RadialField::new).into();
-        let transfer = moduli::transfer::Transfer {
+        let transfer = space::transfer::Transfer {
             from: &from,
             to: &to,
             convention: &convention,
             object_origin: Point3::origin(),
         };
         let start = closed_start(from.shape(), seed);
-        let scheme = moduli::Continuation::default();
+        let scheme = space::Continuation::default();
         let stations = scheme.stations(&transfer).unwrap();
         let arrived = scheme
             .carry(&transfer, &stations, &start, |_, _| {})

@@ -1,7 +1,7 @@
 //! The two metrics of Sec. III-C: on grasps, and on shapes with grasps.
 
 use grasp::{ContactCounts, Grasp};
-use shape::{RadialShape, SphericalShape, space};
+use shape::{RadialShape, SphericalShape, algebra};
 
 /// Why two points have no distance.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -25,7 +25,12 @@ pub fn distance(
     (shape_a, grasp_a): (&RadialShape, &Grasp),
     (shape_b, grasp_b): (&RadialShape, &Grasp),
 ) -> Result<f64, MetricError> {
-    weighted(weight, space::distance(shape_a, shape_b), grasp_a, grasp_b)
+    weighted(
+        weight,
+        algebra::distance(shape_a, shape_b),
+        grasp_a,
+        grasp_b,
+    )
 }
 
 /// The same on M^sph × (S²)^m, with d(f, f′) = (∫ |f−f′|²)^{1/2}.

@@ -9,7 +9,7 @@ pub use matrix::{Job, Matrix, Progress, all_pairs, run_jobs};
 use grasp::{Convention, QualityError};
 use nalgebra::Point3;
 use shape::RadialField;
-use shape::space::SpaceError;
+use shape::algebra::SpaceError;
 use sph::Direction;
 
 use crate::ascent::{Ascent, PaperAscent, Step};

@@ -1,12 +1,12 @@
 //! Shapes and starts that several tests share.
 
 use grasp::Convention;
-use moduli::Objective;
-use moduli::sample::{perturbed, uniform_direction};
 use nalgebra::Point3;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use shape::{RadialShape, Surface};
+use space::Objective;
+use space::sample::{perturbed, uniform_direction};
 use sph::{Coefficients, Direction};
 
 /// A ball with waves.

@@ -4,18 +4,18 @@ mod common;
 
 use common::{closed_start, lumpy, paper};
 use grasp::{Convention, Edges};
-use moduli::point::contacts_on;
-use moduli::quality::{LinearPieces, Quality};
-use moduli::sample::{ContactSampling, perturbed_spherical};
-use moduli::transfer::{Matrix, Transfer};
-use moduli::{
-    AscentError, ByDifferences, Cap, ConstraintError, Constraints, Continuation, MonotoneAscent,
-    Objective,
-};
 use nalgebra::{Point3, Rotation3, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use shape::{RadialField, RadialShape, SphericalShape, Surface};
+use space::point::contacts_on;
+use space::quality::{LinearPieces, Quality};
+use space::sample::{ContactSampling, perturbed_spherical};
+use space::transfer::{Matrix, Transfer};
+use space::{
+    AscentError, ByDifferences, Cap, ConstraintError, Constraints, Continuation, MonotoneAscent,
+    Objective,
+};
 use sph::Direction;
 use sph::direction::{angle, retract, tangent_frame};
 
@@ -342,7 +342,7 @@ fn transfers_keep_limits_on_the_way_and_in_recovery() {
             )
             .unwrap()
             .contacts;
-        let carry = |limits: &Constraints, trace: &mut dyn FnMut(f64, &moduli::Step)| {
+        let carry = |limits: &Constraints, trace: &mut dyn FnMut(f64, &space::Step)| {
             scheme.carry_within(&transfer, &stations, &start, limits, trace)
         };
         let mut seen = [0, 0];
@@ -370,7 +370,7 @@ fn transfers_keep_limits_on_the_way_and_in_recovery() {
         .unwrap_err();
         assert!(matches!(
             error,
-            moduli::TransferError::Constraints(ConstraintError::Unreachable { .. })
+            space::TransferError::Constraints(ConstraintError::Unreachable { .. })
         ));
     }
 }
@@ -432,13 +432,13 @@ fn jobs_of_a_matrix_stand_alone() {
         .collect();
     assert_eq!(forwards[0], backwards[1]);
     assert_eq!(forwards[1], backwards[0]);
-    let missing = moduli::transfer::Job {
+    let missing = space::transfer::Job {
         from: 0,
         to: 7,
         grasp: 0,
     };
     assert!(matches!(
         matrix.carry(&missing),
-        Err(moduli::TransferError::Job { .. })
+        Err(space::TransferError::Job { .. })
     ));
 }

@@ -2,9 +2,9 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use grasp::Convention;
-use moduli::{MonotoneAscent, Objective, PaperAscent};
 use nalgebra::Point3;
 use shape::{RadialField, RadialShape};
+use space::{MonotoneAscent, Objective, PaperAscent};
 use sph::{Coefficients, SphericalCoords, index};
 
 fn bench(criterion: &mut Criterion) {
