@@ -1,8 +1,6 @@
 //! Our ascent: monotone, pole-free, better than the fixed step.
 
-mod common;
-
-use common::{closed_start, lumpy, paper};
+use crate::common::{closed_start, lumpy, paper};
 use grasp::{Convention, Edges, FrameRule, Gradient};
 use nalgebra::{Point3, Vector3};
 use proptest::prelude::*;

@@ -1,10 +1,8 @@
 //! Open vessels are refused also where noise hides their walls; solids are not taken for vessels.
 
-mod common;
-
 use std::f64::consts::{PI, TAU};
 
-use common::{cloud, index, noisy, thinned};
+use crate::common::{cloud, index, noisy, thinned};
 use nalgebra::Point3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

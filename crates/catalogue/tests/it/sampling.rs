@@ -1,9 +1,7 @@
 //! Scans: reproducible, uniform by area, with the noise that was asked for.
 
-mod common;
-
+use crate::common::all_objects;
 use catalogue::{CatalogueObject, SCAN_POINTS, ScanNoise, by_id};
-use common::all_objects;
 use nalgebra::{Point3, Unit, Vector3};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

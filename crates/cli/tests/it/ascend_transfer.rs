@@ -1,13 +1,11 @@
 //! `ascend` and `transfer` as a user runs them.
 
-mod common;
-
 use std::path::Path;
 
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use common::{fitted, moduli, refused, stdout};
+use crate::common::{fitted, moduli, refused, stdout};
 
 /// Two objects and two grasps on the first, which is centred at (1, 0, 0.2).
 fn prepared() -> TempDir {

@@ -1,8 +1,6 @@
 //! Fits of real scans: proved, close to the points, sane where there are none.
 
-mod common;
-
-use common::{SETTINGS, cloud, index, noisy, objects, shuffled};
+use crate::common::{SETTINGS, cloud, index, noisy, objects, shuffled};
 use nalgebra::{DMatrix, DVector, Point3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -245,7 +243,7 @@ fn four_hundred_points_of_a_ball_make_a_ball() {
     let off = out_of_round(&ball.shape.mesh(60, 120).vertices);
     assert!(off <= 1e-3, "{off:.2e}");
     // And it is the ball that 25,000 points show.
-    let full = common::cloud("baseball").unwrap();
+    let full = crate::common::cloud("baseball").unwrap();
     let samples = full.seen_from(&ball.centre_in_cloud);
     let fitted = ball.shape.radii(&samples.directions);
     let pairs = fitted.iter().zip(&samples.radii);

@@ -1,8 +1,6 @@
 //! Heat on a fitted surface: the weighted harmonics of the paper's reference 13.
 
-mod common;
-
-use common::pebble;
+use crate::common::pebble;
 use shape::fit::{FitError, fit};
 use shape::{FitSettings, PointCloud, Surface};
 use sph::direction::even_directions;

@@ -1,8 +1,6 @@
 //! Whole runs: enough grasps, the same ones from the same seed, and none that breaks a rule.
 
-mod common;
-
-use common::{
+use crate::common::{
     egg, link_distance, links_distance, lump, object_from_links, paper_params, parry_mesh, seeded,
 };
 use hand::{CollisionObject, HandPose, Outcome, collect, evaluate_pose, schunk_sdh, synthesize};

@@ -1,8 +1,6 @@
 //! Properties that quality has whatever the grasp.
 
-mod common;
-
-use common::{generator, in_ball, on_sphere, unit};
+use crate::common::{generator, in_ball, on_sphere, unit};
 use grasp::hull::ConvexHull;
 use grasp::{
     ActiveFacet, Contact, Convention, EdgeNorm, Edges, Epsilon, Finger, Grasp, Setup, TorqueLength,

@@ -1,13 +1,11 @@
 //! `synthesize`, `hand check` and hands of one's own, as a user runs them.
 
-mod common;
-
 use std::path::Path;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
-use common::{fitted, moduli, refused, stdout};
+use crate::common::{fitted, moduli, refused, stdout};
 
 /// Where objects stand in their clouds.
 const CENTRE: [f64; 3] = [1.0, 0.0, 0.2];

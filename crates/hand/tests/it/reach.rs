@@ -1,8 +1,8 @@
 //! From contacts to a hand: contacts that a hand can make are found again.
 
-mod common;
-
-use common::{egg, link_distance, lump, object_from_links, paper_params, parry_mesh, seeded};
+use crate::common::{
+    egg, link_distance, lump, object_from_links, paper_params, parry_mesh, seeded,
+};
 use hand::{
     CollisionObject, HandState, ImproveParams, ReachOutcome, ReachParams, Reacher, carried_pose,
     reach_contacts, schunk_sdh, synthesize,

@@ -1,9 +1,7 @@
 //! Findings about hands: a good one has none to worry about, spoilt ones say what is wrong.
 #![allow(clippy::print_stderr)]
 
-mod common;
-
-use common::{paper_params, seeded};
+use crate::common::{paper_params, seeded};
 use hand::{
     Hand, HandSpec, SDH_SPEC, SDH_URDF, Severity, check_hand, hand_meshes, load_urdf,
     load_urdf_with_meshes, schunk_sdh, synthesize,
@@ -128,7 +126,7 @@ fn pictures_show_every_link_where_it_is() {
 
 /// The TOML block of the guide, so that the guide cannot go stale.
 fn guide_spec() -> HandSpec {
-    let guide = include_str!("../../../docs/bring-your-own-hand.md");
+    let guide = include_str!("../../../../docs/bring-your-own-hand.md");
     let block = guide
         .split("```toml")
         .nth(1)

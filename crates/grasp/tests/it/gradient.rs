@@ -1,8 +1,6 @@
 //! Gradients of the margin against central differences.
 
-mod common;
-
-use common::{anywhere, around, generator, in_ball, unit};
+use crate::common::{anywhere, around, generator, in_ball, unit};
 use grasp::{
     Contact, Convention, EdgeNorm, Edges, Finger, FrameRule, Gradient, Setup, TangentRule,
     TorqueLength, Workspace, facet_gradient, margin, near_active_facets,

@@ -1,8 +1,6 @@
 //! Members of M^sph: geometry against differences, proofs, mass, regression.
 
-mod common;
-
-use common::{SETTINGS, assert_differentials_agree_with_differences, pebble, with_poles};
+use crate::common::{SETTINGS, assert_differentials_agree_with_differences, pebble, with_poles};
 use nalgebra::{Matrix3, Point3, Vector3};
 use proptest::prelude::*;
 use shape::{FitSettings, PointCloud, SphericalError, SphericalShape, Surface, fit_spherical};
@@ -111,7 +109,7 @@ fn area_element(shape: &impl Fn(&Direction) -> Matrix3<f64>, p: &Direction) -> f
 fn real_shapes_of_degree_50_are_proved_immersions() {
     // The last two are long and lean: the area element varies by factors of 400 and 1,500.
     for name in ["apple", "sugar_box", "toy_cat", "spray_flask", "banana"] {
-        let Some(cloud) = common::cloud(name) else {
+        let Some(cloud) = crate::common::cloud(name) else {
             return;
         };
         let fit = shape::fit::fit(&cloud, &SETTINGS).unwrap();

@@ -1,8 +1,6 @@
 //! The space of shapes: convexity, cones, the isometry with coefficients, mass, meshes.
 
-mod common;
-
-use common::{assert_differentials_agree_with_differences, pebble};
+use crate::common::{assert_differentials_agree_with_differences, pebble};
 use nalgebra::{Matrix3, Point3, Vector3};
 use proptest::prelude::*;
 use shape::{RadialShape, Surface, TriangleMesh, algebra};

@@ -1,8 +1,6 @@
 //! A workspace that follows a moving grasp answers as a new one does.
 
-mod common;
-
-use common::{anywhere, around, generator, in_ball, unit};
+use crate::common::{anywhere, around, generator, in_ball, unit};
 use grasp::{
     ActiveFacet, Contact, Edges, Finger, Setup, Workspace, epsilon_of, margin, near_active_facets,
 };

@@ -1,12 +1,10 @@
 //! The program as a user runs it: results, files and exit codes.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use common::{moduli, refused, stdout};
+use crate::common::{moduli, refused, stdout};
 
 /// An ellipsoid of 1,500 points away from the origin, as ASCII PLY.
 fn ellipsoid_cloud(folder: &Path) -> PathBuf {

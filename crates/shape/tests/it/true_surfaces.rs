@@ -1,8 +1,6 @@
 //! Fits of scans whose true surface is known: the chosen penalty is the right one for it.
 
-mod common;
-
-use common::SETTINGS;
+use crate::common::SETTINGS;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use shape::PointCloud;

@@ -1,9 +1,7 @@
 //! A warm workspace answers without touching the heap.
 #![allow(unsafe_code, reason = "counting allocations takes a global allocator")]
 
-mod common;
-
-use common::{anywhere, around, generator, unit};
+use crate::common::{anywhere, around, generator, unit};
 use grasp::{
     ActiveFacet, Contact, Edges, FrameRule, Gradient, Setup, Workspace, epsilon_linf, epsilon_of,
     facet_gradient, margin, near_active_facets,

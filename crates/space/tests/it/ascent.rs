@@ -1,8 +1,6 @@
 //! Ascents within limits, on M^sph, under rotation, and of other qualities.
 
-mod common;
-
-use common::{closed_start, lumpy, paper};
+use crate::common::{closed_start, lumpy, paper};
 use grasp::{Convention, Edges};
 use nalgebra::{Point3, Rotation3, Vector3};
 use rand_chacha::ChaCha8Rng;

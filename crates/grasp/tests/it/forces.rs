@@ -1,8 +1,6 @@
 //! Wrench resistance, least friction and the other linear-programme metrics.
 
-mod common;
-
-use common::{around, generator, in_ball, unit};
+use crate::common::{around, generator, in_ball, unit};
 use grasp::{
     Contact, Edges, Finger, Resistance, Setup, Workspace, Wrench, closed_radius, epsilon_of,
     least_friction, min_weight, resist, smallest_singular_value, wrench, wrenches,

@@ -1,9 +1,7 @@
 //! What the solids are like: star-shaped, of a size to be held, round or non-convex where claimed.
 
-mod common;
-
+use crate::common::all_objects;
 use catalogue::{CatalogueObject, SCAN_POINTS, ScanNoise, by_id};
-use common::all_objects;
 use nalgebra::{Point3, Unit, Vector3, center};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

@@ -1,8 +1,6 @@
 //! Closing stops where it should, only ever closes, and never enters the object.
 
-mod common;
-
-use common::{
+use crate::common::{
     link_distance, link_meets, links_distance, lump, object_from_links, parry_mesh, seeded,
 };
 use hand::{

@@ -1,8 +1,6 @@
 //! Every real file loads or is refused with a reason, and no bytes at all cause a panic.
 
-mod common;
-
-use common::{bytes, index, objects};
+use crate::common::{bytes, index, objects};
 use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -81,7 +79,7 @@ fn a_mesh_sampled_by_area_is_the_cloud_of_the_same_object() {
         .unwrap()
         .cloud(Loaded::MESH_SAMPLES, &mut rng)
         .unwrap();
-    let cloud = common::cloud("pear").unwrap();
+    let cloud = crate::common::cloud("pear").unwrap();
     // The standard error of a mean over 25,000 points is 0.2 mm here.
     assert!((sampled.mean() - cloud.mean()).norm() <= 1e-3);
     assert!((sampled.extent() - cloud.extent()).norm() <= 1e-3);

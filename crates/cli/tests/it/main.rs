@@ -1,0 +1,6 @@
+//! The tests of `cli` that use it from outside, as one program.
+
+mod ascend_transfer;
+mod commands;
+mod common;
+mod hands;

@@ -1,0 +1,10 @@
+//! The tests of `grasp` that use it from outside, as one program.
+
+mod allocation;
+mod common;
+mod conventions;
+mod following;
+mod forces;
+mod gradient;
+mod properties;
+mod reference;

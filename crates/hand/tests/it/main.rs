@@ -1,0 +1,9 @@
+//! The tests of `hand` that use it from outside, as one program.
+
+mod check;
+mod closing;
+mod common;
+mod hostile_urdf;
+mod kinematics;
+mod reach;
+mod synthesis;

@@ -1,0 +1,3 @@
+//! The tests of `report` that use it from outside, as one program.
+
+mod pages;

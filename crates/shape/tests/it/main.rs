@@ -1,0 +1,11 @@
+//! The tests of `shape` that use it from outside, as one program.
+
+mod common;
+mod loading;
+mod outliers;
+mod properties;
+mod real_scans;
+mod smoothing;
+mod spherical;
+mod true_surfaces;
+mod vessels;

@@ -1,0 +1,8 @@
+//! The tests of `space` that use it from outside, as one program.
+
+mod allocation;
+mod ascent;
+mod common;
+mod monotone;
+mod paper_schemes;
+mod space;
