@@ -6,7 +6,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use grasp::{
-    ActiveFacet, Contact, Convention, Edges, FrameRule, Gradient, Setup, Workspace, epsilon,
+    ActiveFacet, Contact, Convention, Edges, FrameRule, Gradient, GraspModel, Workspace, epsilon,
     epsilon_linf, facet_gradient, margin, near_active_facets, volume,
 };
 use nalgebra::{Point3, Unit, Vector3};
@@ -36,14 +36,8 @@ fn random_grasp(rng: &mut ChaCha8Rng) -> Vec<Contact> {
 
 fn convention(edges: Edges) -> Convention {
     Convention {
-        name: "unit".to_owned(),
-        edge_norm: grasp::EdgeNorm::UnitNormalComponent,
-        torque_length: grasp::TorqueLength::Metres(1.0),
-        centre: grasp::CentreRule::Given,
-        friction: 1.0,
         edges,
-        tangent: grasp::TangentRule::LeastAligned,
-        not_closed: 0.0,
+        ..Convention::unit()
     }
 }
 
@@ -51,11 +45,13 @@ fn convention(edges: Edges) -> Convention {
 fn grasps(closed: bool) -> Vec<Vec<Contact>> {
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let eight = convention(Edges::Polygon(8));
+    let centre = Point3::origin();
     let mut workspace = Workspace::new();
     let mut out = Vec::new();
     while out.len() < GRASPS {
         let contacts = random_grasp(&mut rng);
-        let found = epsilon(&contacts, &Point3::origin(), &eight, &mut workspace);
+        let model = GraspModel::new(&contacts, &centre, &eight);
+        let found = epsilon(&model, &mut workspace);
         if !closed || found.is_ok_and(|e| e.closed) {
             out.push(contacts);
         }
@@ -65,12 +61,13 @@ fn grasps(closed: bool) -> Vec<Vec<Contact>> {
 
 fn quality(c: &mut Criterion, name: &str, grasps: &[Vec<Contact>], edges: Edges) {
     let convention = convention(edges);
+    let centre = Point3::origin();
     let mut workspace = Workspace::new();
     c.bench_function(name, |b| {
         b.iter(|| {
             for contacts in grasps {
-                let found = epsilon(contacts, &Point3::origin(), &convention, &mut workspace);
-                black_box(found.is_ok());
+                let model = GraspModel::new(contacts, &centre, &convention);
+                black_box(epsilon(&model, &mut workspace).is_ok());
             }
         });
     });
@@ -95,23 +92,18 @@ fn others(c: &mut Criterion) {
     let closed = grasps(true);
     let convention = convention(Edges::Polygon(8));
     let centre = Point3::origin();
-    let setups: Vec<Setup<'_>> = closed
+    let models: Vec<GraspModel<'_>> = closed
         .iter()
-        .map(|contacts| Setup {
-            contacts,
-            centre: &centre,
-            convention: &convention,
-            fingers: &[],
-        })
+        .map(|contacts| GraspModel::new(contacts, &centre, &convention))
         .collect();
     let mut workspace = Workspace::new();
     let mut gradient = Gradient::default();
     c.bench_function("grasp/margin and gradient 3x8, 100 grasps", |b| {
         b.iter(|| {
-            for setup in &setups {
-                if let Ok(found) = margin(setup, &mut workspace) {
+            for model in &models {
+                if let Ok(found) = margin(model, &mut workspace) {
                     let done =
-                        facet_gradient(setup, &found.facet, FrameRule::Tangent, &mut gradient);
+                        facet_gradient(model, &found.facet, FrameRule::Tangent, &mut gradient);
                     black_box(done.is_ok());
                 }
             }
@@ -120,23 +112,23 @@ fn others(c: &mut Criterion) {
     let mut facets: Vec<ActiveFacet> = Vec::new();
     c.bench_function("grasp/near-active facets 3x8, band 0.01, 100 grasps", |b| {
         b.iter(|| {
-            for setup in &setups {
-                let done = near_active_facets(setup, 0.01, &mut workspace, &mut facets);
+            for model in &models {
+                let done = near_active_facets(model, 0.01, &mut workspace, &mut facets);
                 black_box(done.is_ok());
             }
         });
     });
     c.bench_function("grasp/epsilon L-infinity 3x8, 100 grasps", |b| {
         b.iter(|| {
-            for setup in &setups {
-                black_box(epsilon_linf(setup, &mut workspace).is_ok());
+            for model in &models {
+                black_box(epsilon_linf(model, &mut workspace).is_ok());
             }
         });
     });
     c.bench_function("grasp/full hull and volume 3x8, 10 grasps", |b| {
         b.iter(|| {
-            for contacts in &closed[..10] {
-                black_box(volume(contacts, &centre, &convention).is_ok());
+            for model in &models[..10] {
+                black_box(volume(model).is_ok());
             }
         });
     });

@@ -7,7 +7,7 @@
 //! torque length take the place of the line's (`frogger` then also has its own tangents).
 #![allow(clippy::print_stdout, reason = "a program that prints its result")]
 
-use grasp::{Contact, Convention, Edges, Epsilon, TangentRule, Workspace, epsilon};
+use grasp::{Contact, Convention, Edges, Epsilon, GraspModel, TangentRule, Workspace, epsilon};
 use nalgebra::{Point3, Unit, Vector3};
 use std::error::Error;
 use std::time::Instant;
@@ -77,12 +77,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         facets = 0;
         let start = Instant::now();
         for case in &cases {
-            results.push(epsilon(
-                &case.contacts,
-                &case.centre,
-                &case.convention,
-                &mut workspace,
-            )?);
+            let model = GraspModel::new(&case.contacts, &case.centre, &case.convention);
+            results.push(epsilon(&model, &mut workspace)?);
             facets += workspace.facets_made();
         }
         times.push(start.elapsed().as_secs_f64() * 1e6 / cases.len().max(1) as f64);

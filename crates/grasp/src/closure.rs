@@ -1,10 +1,10 @@
 //! Force closure by a linear programme, independent of any hull.
 
-use crate::contact::Contact;
-use crate::convention::Convention;
+use crate::grasp_model::GraspModel;
 use crate::quality::min_weight_of;
-use crate::wrench::{Wrench, WrenchError, wrenches};
-use nalgebra::{DMatrix, Point3};
+use crate::wrench::{Wrench, WrenchError};
+use crate::wrenches::wrenches;
+use nalgebra::DMatrix;
 
 /// A singular value below this part of the largest counts as zero.
 const RANK_TOLERANCE: f64 = 1e-9;
@@ -16,14 +16,8 @@ const WEIGHT_TOLERANCE: f64 = 1e-9;
 /// The wrenches must span R⁶ and be balanced by weights that are all positive, the largest
 /// smallest of which a linear programme finds. Grasps whose epsilon quality is below about 1e-8 of
 /// the longest wrench may be called either way.
-pub fn force_closed(
-    contacts: &[Contact],
-    centre: &Point3<f64>,
-    convention: &Convention,
-) -> Result<bool, WrenchError> {
-    Ok(wrenches_force_closed(&wrenches(
-        contacts, centre, convention,
-    )?))
+pub fn force_closed(model: &GraspModel<'_>) -> Result<bool, WrenchError> {
+    Ok(wrenches_force_closed(&wrenches(model)?))
 }
 
 /// The same for a plain list of wrenches.
@@ -43,7 +37,9 @@ fn spans(wrenches: &[Wrench]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Vector3;
+    use crate::contact::Contact;
+    use crate::convention::Convention;
+    use nalgebra::{Point3, Vector3};
 
     fn ring(count: usize) -> Vec<Contact> {
         (0..count)
@@ -60,8 +56,9 @@ mod tests {
 
     #[test]
     fn three_contacts_close_and_two_do_not() {
-        let convention = Convention::named("unit").unwrap();
-        let closed = |c: &[Contact]| force_closed(c, &Point3::origin(), &convention);
+        let convention = Convention::unit();
+        let centre = Point3::origin();
+        let closed = |c: &[Contact]| force_closed(&GraspModel::new(c, &centre, &convention));
         assert_eq!(closed(&ring(3)), Ok(true));
         // Two points cannot resist a torque about the line through them.
         assert_eq!(closed(&ring(2)), Ok(false));

@@ -18,8 +18,8 @@ pub enum EdgeNorm {
 pub enum TorqueLength {
     /// A fixed length in metres, positive.
     Metres(f64),
-    /// The largest distance of a contact from the centre. Systems that take the largest distance of
-    /// a vertex of the object are obeyed with `Metres` of that distance.
+    /// The largest distance of a contact from the centre. To reproduce systems that use the object's
+    /// largest vertex distance, pass that distance as `Metres`.
     MaxContactDistance,
 }
 
@@ -91,13 +91,13 @@ impl TangentRule {
         }
     }
 
-    /// The walls at which the tangent jumps, around the side on which the normal `side` lies: for each
-    /// a function of the normal that is ≥ 0 on that side and 0 at the wall, at `normal`, and its slope
-    /// there.
+    /// The discontinuities of the tangent around the normal `side`, evaluated at `normal`.
     ///
-    /// `LeastAligned` changes its axis where two components are equally small; `Projected` has no
-    /// walls, only one singular normal.
-    pub fn walls(
+    /// Each is a function of the normal that is ≥ 0 on the side of `side` and 0 where the tangent
+    /// jumps, given as its value and its gradient at `normal`. `LeastAligned` jumps where two
+    /// components of the normal are equally small; `Projected` has a single singular normal and no
+    /// such surface.
+    pub fn discontinuities(
         &self,
         side: &UnitVector3<f64>,
         normal: &UnitVector3<f64>,
@@ -150,53 +150,95 @@ impl Convention {
     pub const NAMES: [&'static str; 6] =
         ["paper", "graspit", "dexnet", "frogger", "openrave", "unit"];
 
-    /// A convention by name.
-    ///
-    /// - `paper`: our reading of Grasp Moduli Spaces (ICRA 2014), which states none: μ = 1, ten
-    ///   edges, centimetres, the cloud's mean.
-    /// - `graspit`: torque over the largest distance from the centre of mass, eight edges, −1 when
-    ///   open; its μ comes from a table of materials, of which rubber on plastic (1.0) stands here.
-    /// - `dexnet`: torques in millimetres, μ = 0.5, eight edges.
-    /// - `frogger`: unit edges, metres, object origin, μ = 0.7, four edges, −1 when open.
-    /// - `openrave`: unit edges, metres, object origin, μ = 0.4, eight edges.
-    /// - `unit`: no scaling at all about the given centre; μ = 1 and eight edges until told.
-    ///
-    /// All begin their edges by `TangentRule::LeastAligned`, so that one file of grasps means one set
-    /// of edges; the systems' own frames differ from it in the phase of the pyramids.
-    pub fn named(name: &str) -> Result<Self, UnknownConvention> {
-        use CentreRule::{CentreOfMass, CloudMean, Given, ObjectOrigin};
-        use EdgeNorm::{UnitLength, UnitNormalComponent};
-        use TorqueLength::{MaxContactDistance, Metres};
-        let (edge_norm, torque_length, centre, friction, edges, not_closed) = match name {
-            "paper" => (UnitNormalComponent, Metres(0.01), CloudMean, 1.0, 10, 0.0),
-            "graspit" => (
-                UnitNormalComponent,
-                MaxContactDistance,
-                CentreOfMass,
-                1.0,
-                8,
-                -1.0,
-            ),
-            "dexnet" => (UnitNormalComponent, Metres(1e-3), CentreOfMass, 0.5, 8, 0.0),
-            "frogger" => (UnitLength, Metres(1.0), ObjectOrigin, 0.7, 4, -1.0),
-            "openrave" => (UnitLength, Metres(1.0), ObjectOrigin, 0.4, 8, 0.0),
-            "unit" => (UnitNormalComponent, Metres(1.0), Given, 1.0, 8, 0.0),
-            _ => {
-                return Err(UnknownConvention {
-                    name: name.to_owned(),
-                });
-            }
-        };
-        Ok(Convention {
+    /// Our reading of Grasp Moduli Spaces (ICRA 2014), which states none of these numbers: μ = 1, ten
+    /// edges of unit normal component, torques in centimetres about the mean of the cloud.
+    pub fn paper() -> Self {
+        let torque_length = TorqueLength::Metres(0.01);
+        Self::of("paper", torque_length, CentreRule::CloudMean, 1.0, 10)
+    }
+
+    /// `GraspIt!`: torques over the largest distance from the centre of mass, eight edges, −1 when not
+    /// closed. Its μ comes from a table of materials; this is rubber on plastic (1.0).
+    pub fn graspit() -> Self {
+        let torque_length = TorqueLength::MaxContactDistance;
+        Convention {
+            not_closed: -1.0,
+            ..Self::of("graspit", torque_length, CentreRule::CentreOfMass, 1.0, 8)
+        }
+    }
+
+    /// Dex-Net: torques in millimetres about the centre of mass, μ = 0.5, eight edges.
+    pub fn dexnet() -> Self {
+        let torque_length = TorqueLength::Metres(1e-3);
+        Self::of("dexnet", torque_length, CentreRule::CentreOfMass, 0.5, 8)
+    }
+
+    /// `FRoGGeR`: edges of unit length, torques in metres about the object's origin, μ = 0.7, four
+    /// edges, −1 when not closed.
+    pub fn frogger() -> Self {
+        let torque_length = TorqueLength::Metres(1.0);
+        Convention {
+            edge_norm: EdgeNorm::UnitLength,
+            not_closed: -1.0,
+            ..Self::of("frogger", torque_length, CentreRule::ObjectOrigin, 0.7, 4)
+        }
+    }
+
+    /// `OpenRAVE`: edges of unit length, torques in metres about the object's origin, μ = 0.4, eight
+    /// edges.
+    pub fn openrave() -> Self {
+        let torque_length = TorqueLength::Metres(1.0);
+        Convention {
+            edge_norm: EdgeNorm::UnitLength,
+            ..Self::of("openrave", torque_length, CentreRule::ObjectOrigin, 0.4, 8)
+        }
+    }
+
+    /// No scaling at all: edges of unit normal component, torques in metres about the centre that the
+    /// grasp carries; μ = 1 and eight edges until told otherwise.
+    pub fn unit() -> Self {
+        let torque_length = TorqueLength::Metres(1.0);
+        Self::of("unit", torque_length, CentreRule::Given, 1.0, 8)
+    }
+
+    fn of(
+        name: &str,
+        torque_length: TorqueLength,
+        centre: CentreRule,
+        friction: f64,
+        edges: usize,
+    ) -> Self {
+        Convention {
             name: name.to_owned(),
-            edge_norm,
+            edge_norm: EdgeNorm::UnitNormalComponent,
             torque_length,
             centre,
             friction,
             edges: Edges::Polygon(edges),
             tangent: TangentRule::LeastAligned,
-            not_closed,
-        })
+            not_closed: 0.0,
+        }
+    }
+
+    /// A convention by one of [`Convention::NAMES`].
+    ///
+    /// All begin their edges by [`TangentRule::LeastAligned`], so that one file of grasps means one
+    /// set of edges; the systems' own frames differ from it in the phase of the pyramids.
+    ///
+    /// # Errors
+    /// A name that is none of these.
+    pub fn named(name: &str) -> Result<Self, UnknownConvention> {
+        match name {
+            "paper" => Ok(Self::paper()),
+            "graspit" => Ok(Self::graspit()),
+            "dexnet" => Ok(Self::dexnet()),
+            "frogger" => Ok(Self::frogger()),
+            "openrave" => Ok(Self::openrave()),
+            "unit" => Ok(Self::unit()),
+            _ => Err(UnknownConvention {
+                name: name.to_owned(),
+            }),
+        }
     }
 
     /// Checks friction, edges and a fixed torque length.
@@ -229,7 +271,7 @@ impl Convention {
     }
 }
 
-/// More edges than this a contact are refused: the round cone is what is meant then.
+/// The most edges per contact; beyond it the round cone is the better choice.
 pub(crate) const MAX_EDGES: usize = 1024;
 
 /// A name that is none of `Convention::NAMES`.
@@ -250,7 +292,7 @@ pub enum ConventionError {
         value: f64,
     },
     /// Too few or too many edges.
-    #[error("{count} edges a friction cone: must be between 3 and {MAX_EDGES}")]
+    #[error("{count} edges per friction cone: must be between 3 and {MAX_EDGES}")]
     Edges {
         /// The edges given.
         count: usize,
@@ -294,7 +336,7 @@ mod tests {
 
     #[test]
     fn refuses_numbers_out_of_range() {
-        let unit = Convention::named("unit").unwrap();
+        let unit = Convention::unit();
         for friction in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let bad = Convention {
                 friction,

@@ -1,7 +1,7 @@
 //! The gradient of a facet's offset by contact positions, normals and the centre.
 
 use crate::convention::TorqueLength;
-use crate::finger::Setup;
+use crate::grasp_model::GraspModel;
 use crate::quality::{ActiveFacet, Carrier};
 use crate::wrench::WrenchError;
 use nalgebra::Vector3;
@@ -44,21 +44,21 @@ impl Gradient {
 /// cone does to g·f. Where Q is the least of several offsets that tie, it has no gradient and every
 /// one of the tied facets gives a generalised one.
 pub fn facet_gradient(
-    setup: &Setup<'_>,
+    model: &GraspModel<'_>,
     facet: &ActiveFacet,
     frame: FrameRule,
     out: &mut Gradient,
 ) -> Result<(), WrenchError> {
-    let length = setup.validate()?;
-    out.reset(setup.contacts.len());
+    let length = model.validate()?;
+    out.reset(model.contacts.len());
     for carrier in facet.carriers() {
-        let by = by_carrier(setup, facet, carrier, frame, length);
+        let by = by_carrier(model, facet, carrier, frame, length);
         out.positions[carrier.contact] += by.position * carrier.weight;
         out.centre -= by.position * carrier.weight;
         out.normals[carrier.contact] += by.normal * carrier.weight;
     }
-    if setup.convention.torque_length == TorqueLength::MaxContactDistance {
-        by_length(setup, facet, length, out);
+    if model.convention.torque_length == TorqueLength::MaxContactDistance {
+        by_length(model, facet, length, out);
     }
     Ok(())
 }
@@ -69,15 +69,15 @@ struct ByCarrier {
 }
 
 fn by_carrier(
-    setup: &Setup<'_>,
+    model: &GraspModel<'_>,
     facet: &ActiveFacet,
     carrier: &Carrier,
     frame: FrameRule,
     length: f64,
 ) -> ByCarrier {
-    let contact = &setup.contacts[carrier.contact];
+    let contact = &model.contacts[carrier.contact];
     let n = contact.inward_normal.into_inner();
-    let arm = contact.position - setup.centre;
+    let arm = contact.position - model.centre;
     let (a, b) = split(&facet.normal);
     let (f, torque) = split(&carrier.wrench);
     let g = a + b.cross(&arm) / length;
@@ -87,7 +87,7 @@ fn by_carrier(
     let torsion = (torque - arm.cross(&f) / length).dot(&n);
     let mut normal = g * unit - slip * g.dot(&n) + b * torsion;
     if frame == FrameRule::Tangent {
-        let rule = &setup.convention.tangent;
+        let rule = &model.convention.tangent;
         let t = rule.tangent(&contact.inward_normal).into_inner();
         let side = n.cross(&t);
         // t comes from the vector e = n (e·n) + t (e·t); turning n by dn spins t by −(e·n)/(e·t) side·dn.
@@ -103,15 +103,15 @@ fn by_carrier(
 }
 
 /// The torque length is the arm of the farthest contact: a longer one shrinks all torques.
-fn by_length(setup: &Setup<'_>, facet: &ActiveFacet, length: f64, out: &mut Gradient) {
+fn by_length(model: &GraspModel<'_>, facet: &ActiveFacet, length: f64, out: &mut Gradient) {
     let (_, b) = split(&facet.normal);
     let torque: f64 = facet
         .carriers()
         .iter()
         .map(|c| c.weight * b.dot(&split(&c.wrench).1))
         .sum();
-    let arm = |i: usize| setup.contacts[i].position - setup.centre;
-    let farthest = (0..setup.contacts.len())
+    let arm = |i: usize| model.contacts[i].position - model.centre;
+    let farthest = (0..model.contacts.len())
         .max_by(|&i, &j| arm(i).norm_squared().total_cmp(&arm(j).norm_squared()));
     if let Some(i) = farthest {
         let by_position = arm(i) * (-torque / (length * length));

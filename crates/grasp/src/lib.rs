@@ -5,33 +5,37 @@
 //! of those.
 
 mod closure;
+mod cone;
 mod contact;
+mod contact_model;
 mod convention;
 mod distance;
-mod finger;
 mod friction;
 mod gradient;
+mod grasp_model;
 pub mod hull;
 mod linear;
 mod quality;
 mod resistance;
 mod wrench;
+mod wrenches;
 
 pub use closure::{force_closed, wrenches_force_closed};
 pub use contact::{Contact, ContactError, Grasp};
+pub use contact_model::{ContactModel, ContactModelError};
 pub use convention::{
     CentreRule, Convention, ConventionError, EdgeNorm, Edges, TangentRule, TorqueLength,
     UnknownConvention,
 };
 pub use distance::{ContactCounts, distance};
-pub use finger::{Finger, FingerError, Setup};
 pub use friction::{cone_edges, cone_edges_from, tangent};
 pub use gradient::{FrameRule, Gradient, facet_gradient};
+pub use grasp_model::GraspModel;
 pub use quality::{
-    ActiveFacet, BatchError, Carrier, Epsilon, Margin, QualityError, Workspace, closed_radius,
-    epsilon, epsilon_batch, epsilon_linf, epsilon_of, epsilon_of_wrenches, epsilon_quality,
-    least_friction, lipschitz_constant, margin, min_weight, near_active_facets,
-    smallest_singular_value, volume,
+    ActiveFacet, Carrier, Epsilon, Margin, QualityError, Workspace, closed_radius, epsilon,
+    epsilon_linf, epsilon_of_wrenches, least_friction, lipschitz_constant, margin, min_weight,
+    near_active_facets, smallest_singular_value, volume,
 };
 pub use resistance::{Resistance, resist};
-pub use wrench::{Wrench, WrenchError, wrench, wrenches, wrenches_into, wrenches_with_tangents};
+pub use wrench::{Wrench, WrenchError, wrench};
+pub use wrenches::{wrenches, wrenches_with_tangents};

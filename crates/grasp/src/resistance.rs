@@ -1,8 +1,9 @@
 //! Wrench resistance: contact forces inside the cones that hold an external wrench.
 
+use crate::cone::Cone;
 use crate::convention::Edges;
-use crate::finger::{Cone, Setup};
 use crate::friction::angle;
+use crate::grasp_model::GraspModel;
 use crate::hull::plane::{V6, dot};
 use crate::linear::{Outcome, Programme};
 use crate::wrench::{Wrench, WrenchError};
@@ -37,12 +38,12 @@ const ROUNDS: usize = 60;
 /// `external` is (force, torque/length) in the convention's torque length. Polygonal cones give the
 /// exact optimum of a linear programme; round cones add the wrench that the multipliers ask for until
 /// the optimum is certain to a relative 1e-9 (or to what 60 rounds reach: see `bound`).
-pub fn resist(setup: &Setup<'_>, external: &Wrench) -> Result<Resistance, WrenchError> {
-    let length = setup.validate()?;
-    let contacts = setup.contacts.len();
-    let cones: Vec<Cone> = (0..contacts).map(|i| Cone::new(setup, i, length)).collect();
-    let scales: Vec<f64> = (0..contacts).map(|i| setup.edge_scale(i)).collect();
-    let (count, mut rounds) = match setup.convention.edges {
+pub fn resist(model: &GraspModel<'_>, external: &Wrench) -> Result<Resistance, WrenchError> {
+    let length = model.validate()?;
+    let contacts = model.contacts.len();
+    let cones: Vec<Cone> = (0..contacts).map(|i| Cone::new(model, i, length)).collect();
+    let scales: Vec<f64> = (0..contacts).map(|i| model.edge_scale(i)).collect();
+    let (count, mut rounds) = match model.convention.edges {
         Edges::Polygon(count) => (count, 1),
         Edges::Round { .. } => (8, ROUNDS),
     };
@@ -55,7 +56,7 @@ pub fn resist(setup: &Setup<'_>, external: &Wrench) -> Result<Resistance, Wrench
             Outcome::Infeasible { certificate } => (certificate, false),
             Outcome::Unbounded => return Ok(fails(&[0.0; 6])),
         };
-        let shortfall = match setup.convention.edges {
+        let shortfall = match model.convention.edges {
             Edges::Polygon(_) => 0.0,
             Edges::Round { .. } => price(&cones, &scales, multipliers, &mut columns, optimum),
         };
@@ -66,7 +67,7 @@ pub fn resist(setup: &Setup<'_>, external: &Wrench) -> Result<Resistance, Wrench
             // Scaling the multipliers down until they price every wrench right keeps them a proof.
             Outcome::Optimal { x, value, .. } => {
                 let bound = value / (1.0 + shortfall);
-                holds(setup, &columns, &x, value, bound, length)
+                holds(model, &columns, &x, value, bound, length)
             }
             Outcome::Infeasible { certificate } => fails(&certificate),
             Outcome::Unbounded => fails(&[0.0; 6]),
@@ -155,14 +156,14 @@ fn price(
 }
 
 fn holds(
-    setup: &Setup<'_>,
+    model: &GraspModel<'_>,
     columns: &[(usize, V6)],
     x: &[f64],
     value: f64,
     bound: f64,
     length: f64,
 ) -> Resistance {
-    let contacts = setup.contacts.len();
+    let contacts = model.contacts.len();
     let mut forces = vec![Vector3::zeros(); contacts];
     let mut torques = vec![Vector3::zeros(); contacts];
     for ((owner, w), &share) in columns.iter().zip(x) {
@@ -171,8 +172,8 @@ fn holds(
     }
     let torsions = (0..contacts)
         .map(|i| {
-            let contact = &setup.contacts[i];
-            let arm = contact.position - setup.centre;
+            let contact = &model.contacts[i];
+            let arm = contact.position - model.centre;
             (torques[i] - arm.cross(&forces[i])).dot(&contact.inward_normal)
         })
         .collect();

@@ -12,7 +12,7 @@
 
 use std::error::Error;
 
-use grasp::{Contact, Convention, Grasp, epsilon_quality};
+use grasp::{Contact, Convention, GraspModel, Workspace, epsilon};
 use hand::{
     ClosingRules, CollisionObject, Hand, HandGrasp, HandState, ImproveParams, PoseSampling,
     ReachOutcome, ReachParams, Reacher, SynthesisParams, carried_pose, schunk_sdh, synthesize,
@@ -121,11 +121,10 @@ impl Study {
     }
 
     fn quality(&self, contacts: &[Contact]) -> Result<f64, Failure> {
-        let grasp = Grasp {
-            contacts: contacts.to_vec(),
-            centre: Point3::origin(),
-        };
-        Ok(epsilon_quality(&grasp, &self.convention)?)
+        let centre = Point3::origin();
+        let model = GraspModel::new(contacts, &centre, &self.convention);
+        let found = epsilon(&model, &mut Workspace::new())?;
+        Ok(found.value(&self.convention))
     }
 
     /// Carries one grasp and looks for a hand on the target.

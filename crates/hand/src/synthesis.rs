@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use grasp::{Contact, Convention, Grasp, QualityError, epsilon_quality};
+use grasp::{Contact, Convention, GraspModel, QualityError, Workspace, epsilon};
 use nalgebra::{Isometry3, Point3};
 use rand::Rng;
 use shape::RadialShape;
@@ -204,11 +204,9 @@ pub fn evaluate_pose(
         Ok(grasp) => grasp,
         Err(reason) => return Ok(Outcome::Rejected(reason)),
     };
-    let measured = Grasp {
-        contacts: grasp.contacts.clone(),
-        centre: params.centre,
-    };
-    let quality = epsilon_quality(&measured, &params.convention)?;
+    let model = GraspModel::new(&grasp.contacts, &params.centre, &params.convention);
+    let found = epsilon(&model, &mut Workspace::new())?;
+    let quality = found.value(&params.convention);
     let grasp = HandGrasp { quality, ..grasp };
     Ok(if quality > 0.0 && quality >= params.least_quality {
         Outcome::Stable(grasp)

@@ -1,8 +1,8 @@
 //! Grasp quality as a function of contacts on one surface, under one convention.
 
 use grasp::{
-    ActiveFacet, CentreRule, Contact, Convention, Edges, Epsilon, FrameRule, Gradient, Margin,
-    QualityError, Setup, TangentRule, TorqueLength, Workspace,
+    ActiveFacet, CentreRule, Contact, Convention, Edges, Epsilon, FrameRule, Gradient, GraspModel,
+    Margin, QualityError, TangentRule, TorqueLength, Workspace,
 };
 use nalgebra::{Point3, Vector3};
 use shape::{Differential, Surface};
@@ -53,7 +53,7 @@ impl Pyramids {
                 edges: Edges::Polygon(PYRAMID_EDGES),
                 ..convention.clone()
             },
-            workspace: Workspace::following(),
+            workspace: Workspace::with_warm_start(),
         })
     }
 
@@ -75,10 +75,10 @@ impl Pyramids {
             Some(axis) => TangentRule::Projected(axis),
             None => TangentRule::LeastAligned,
         };
-        let setup = setup(contacts, centre, &self.convention);
-        let nearest = grasp::margin(&setup, &mut self.workspace)?.value;
+        let model = GraspModel::new(contacts, centre, &self.convention);
+        let nearest = grasp::margin(&model, &mut self.workspace)?.value;
         let band = BAND * nearest.max(0.0) + 1e-3;
-        grasp::near_active_facets(&setup, band, &mut self.workspace, facets)?;
+        grasp::near_active_facets(&model, band, &mut self.workspace, facets)?;
         // Whether a facet far from its own foot is found depends on the way of the search.
         facets.retain(|f| f.carriers().iter().all(|c| c.weight >= FAR_FROM_FOOT));
         Ok(nearest)
@@ -125,7 +125,7 @@ impl Objective {
             pyramids: Pyramids::of(&convention),
             convention,
             centre,
-            workspace: Workspace::following(),
+            workspace: Workspace::with_warm_start(),
             contacts: Vec::new(),
             evaluations: 0,
             scratch: Scratch::default(),
@@ -160,7 +160,7 @@ impl Objective {
 
     /// Forgets the grasps before: the answers that follow do not depend on them, to the last bit.
     ///
-    /// Otherwise a search goes on from the last one ([`Workspace::following`]).
+    /// Otherwise a search goes on from the last one ([`Workspace::with_warm_start`]).
     pub fn forget(&mut self) {
         self.workspace.forget();
         if let Some(pyramids) = &mut self.pyramids {
@@ -172,19 +172,15 @@ impl Objective {
     /// The full answer for a list of contacts.
     pub fn epsilon(&mut self, contacts: &[Contact]) -> Result<Epsilon, QualityError> {
         self.evaluations += 1;
-        grasp::epsilon(
-            contacts,
-            &self.centre,
-            &self.convention,
-            &mut self.workspace,
-        )
+        let model = GraspModel::new(contacts, &self.centre, &self.convention);
+        grasp::epsilon(&model, &mut self.workspace)
     }
 
     /// Q, or minus the distance from force closure, with the facet that decides.
     pub fn margin(&mut self, contacts: &[Contact]) -> Result<Margin, QualityError> {
         self.evaluations += 1;
-        let setup = setup(contacts, &self.centre, &self.convention);
-        grasp::margin(&setup, &mut self.workspace)
+        let model = GraspModel::new(contacts, &self.centre, &self.convention);
+        grasp::margin(&model, &mut self.workspace)
     }
 
     /// The facets whose offset is within `band` of Q, the nearest first; none for an open grasp.
@@ -195,8 +191,8 @@ impl Objective {
         facets: &mut Vec<ActiveFacet>,
     ) -> Result<(), QualityError> {
         self.evaluations += 1;
-        let setup = setup(contacts, &self.centre, &self.convention);
-        grasp::near_active_facets(&setup, band, &mut self.workspace, facets)
+        let model = GraspModel::new(contacts, &self.centre, &self.convention);
+        grasp::near_active_facets(&model, band, &mut self.workspace, facets)
     }
 
     /// How a facet's offset changes with the contacts and their normals.
@@ -207,8 +203,8 @@ impl Objective {
         frame: FrameRule,
         gradient: &mut Gradient,
     ) -> Result<(), QualityError> {
-        let setup = setup(contacts, &self.centre, &self.convention);
-        Ok(grasp::facet_gradient(&setup, facet, frame, gradient)?)
+        let model = GraspModel::new(contacts, &self.centre, &self.convention);
+        Ok(grasp::facet_gradient(&model, facet, frame, gradient)?)
     }
 
     /// Q ≥ 0 of contacts; 0 when they are not force-closed, whatever the convention prints then.
@@ -310,7 +306,7 @@ impl<S: Surface> Quality<S> for Objective {
             } else {
                 surface.contact(s).1
             };
-            for (slack, by_normal) in rule.walls(&side, &at.inward_normal) {
+            for (slack, by_normal) in rule.discontinuities(&side, &at.inward_normal) {
                 let slope = in_frame(p, &(at.normal_slope.transpose() * by_normal));
                 walls.push(slack)[2 * i..2 * i + 2].copy_from_slice(&slope);
             }
@@ -380,19 +376,5 @@ impl Objective {
         }
         self.scratch.gradient = gradient;
         result
-    }
-}
-
-/// A grasp of the convention's own hard fingers.
-fn setup<'a>(
-    contacts: &'a [Contact],
-    centre: &'a Point3<f64>,
-    convention: &'a Convention,
-) -> Setup<'a> {
-    Setup {
-        contacts,
-        centre,
-        convention,
-        fingers: &[],
     }
 }

@@ -82,7 +82,7 @@ fn measure(
         .map(|(chunk, grasps)| {
             let mut work = Workspace::new();
             let one = |(i, g): (usize, &Grasp)| {
-                grasp::epsilon(&g.contacts, &g.centre, convention, &mut work)
+                grasp::epsilon(&g.under(convention), &mut work)
                     .map_err(|e| Failure::input(path, format!("grasp {}: {e}", chunk * CHUNK + i)))
             };
             grasps.iter().enumerate().map(one).collect()

@@ -8,6 +8,8 @@
 //! own vertices) this makes min(offset − residual) a lower bound of the ball inside, however thin
 //! a facet may be.
 
+mod moved;
+
 use super::plane::{Plane, V6, add_scaled, norm, scale};
 
 /// A neighbour across a ridge: the facet's number and which of its six vertices the ridge omits.

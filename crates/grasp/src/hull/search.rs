@@ -4,6 +4,8 @@
 //! its nearest facet is a lower bound of the ball's radius, the support function along that
 //! facet's normal an upper one; the search ends when they meet.
 
+mod warm_start;
+
 use super::min_norm::{Corral, Effort, Nearest};
 use super::plane::{Plane, V6, add_scaled, dot, norm, scale};
 use super::polytope::{MAX_VERTICES, Polytope};
@@ -39,7 +41,7 @@ pub(crate) const RELATIVE_TOLERANCE: f64 = 1e-12;
 
 /// What is tried in turn. Wrenches that miss a common hyperplane by about one tolerance leave facets
 /// too thin for a plane; to a wider or narrower tolerance the same wrenches are clear.
-const LADDER: [f64; 4] = [RELATIVE_TOLERANCE, 1e-10, 3e-14, 1e-9];
+const TOLERANCES: [f64; 4] = [RELATIVE_TOLERANCE, 1e-10, 3e-14, 1e-9];
 
 impl Search {
     /// The largest origin-centred ball in the hull that `source` supports.
@@ -64,7 +66,7 @@ impl Search {
             };
         }
         let mut best = None;
-        for relative in LADDER {
+        for relative in TOLERANCES {
             let tolerance = relative * reach;
             let ball = match complete(&self.corral, source, tolerance) {
                 Err(Flat { normal }) => return Ball::Open { direction: normal },

@@ -1,13 +1,11 @@
 //! Epsilon quality (Ferrari and Canny's L¹): the largest ball around the origin in the hull.
 
 use super::workspace::{Workspace, requested_gap};
-use crate::contact::{Contact, Grasp};
 use crate::convention::Convention;
-use crate::finger::Setup;
+use crate::grasp_model::GraspModel;
 use crate::hull::HullError;
 use crate::hull::search::Ball;
 use crate::wrench::{Wrench, WrenchError};
-use nalgebra::Point3;
 use thiserror::Error;
 
 /// The epsilon quality of a grasp as a certified interval.
@@ -68,29 +66,13 @@ impl Epsilon {
 /// cones an interval of the width that the convention asks for. The result does not depend on the
 /// order of the contacts, and coplanar or repeated wrenches need no special care. A closed grasp of
 /// three contacts and eight edges costs some ten microseconds, an open one about one.
-pub fn epsilon(
-    contacts: &[Contact],
-    centre: &Point3<f64>,
-    convention: &Convention,
-    workspace: &mut Workspace,
-) -> Result<Epsilon, QualityError> {
-    let setup = Setup {
-        contacts,
-        centre,
-        convention,
-        fingers: &[],
-    };
-    epsilon_of(&setup, workspace)
-}
-
-/// The same for any fingers.
-pub fn epsilon_of(setup: &Setup<'_>, workspace: &mut Workspace) -> Result<Epsilon, QualityError> {
-    workspace.load_next(setup)?;
-    let ball = workspace.ball(requested_gap(setup.convention.edges));
+pub fn epsilon(model: &GraspModel<'_>, workspace: &mut Workspace) -> Result<Epsilon, QualityError> {
+    workspace.load_next(model)?;
+    let ball = workspace.ball(requested_gap(model.convention.edges));
     Ok(Epsilon::from_ball(&ball))
 }
 
-/// The same for a plain list of wrenches, whatever they come from.
+/// The epsilon quality of a plain list of wrenches, whatever they come from.
 pub fn epsilon_of_wrenches(
     wrenches: &[Wrench],
     workspace: &mut Workspace,
@@ -108,32 +90,6 @@ pub fn epsilon_of_wrenches(
     Ok(Epsilon::from_ball(&workspace.ball(0.0)))
 }
 
-/// The number that the convention prints for a grasp, with scratch of its own.
-pub fn epsilon_quality(grasp: &Grasp, convention: &Convention) -> Result<f64, QualityError> {
-    let mut workspace = Workspace::new();
-    let found = epsilon(&grasp.contacts, &grasp.centre, convention, &mut workspace)?;
-    Ok(found.value(convention))
-}
-
-/// Epsilon quality of many grasps, one result each, in `out` (cleared first).
-///
-/// Threads belong to the caller: give each a part of the grasps and a workspace of its own. Stops at
-/// the first grasp that has no quality and names it.
-pub fn epsilon_batch(
-    grasps: &[Grasp],
-    convention: &Convention,
-    workspace: &mut Workspace,
-    out: &mut Vec<Epsilon>,
-) -> Result<(), BatchError> {
-    out.clear();
-    for (index, grasp) in grasps.iter().enumerate() {
-        let found = epsilon(&grasp.contacts, &grasp.centre, convention, workspace)
-            .map_err(|source| BatchError { index, source })?;
-        out.push(found);
-    }
-    Ok(())
-}
-
 /// Why a grasp has no quality.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum QualityError {
@@ -143,14 +99,4 @@ pub enum QualityError {
     /// The hull could not be built.
     #[error(transparent)]
     Hull(#[from] HullError),
-}
-
-/// The grasp of a batch that has no quality.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-#[error("grasp {index}: {source}")]
-pub struct BatchError {
-    /// The grasp, from 0.
-    pub index: usize,
-    /// What is wrong with it.
-    pub source: QualityError,
 }

@@ -1,6 +1,6 @@
 //! Qualities of the grasp map, the linear map from contact forces to wrenches.
 
-use crate::finger::Setup;
+use crate::grasp_model::GraspModel;
 use crate::wrench::{WrenchError, wrench};
 use nalgebra::{DMatrix, Matrix3};
 
@@ -8,14 +8,14 @@ use nalgebra::{DMatrix, Matrix3};
 ///
 /// In the torque length of the convention; friction plays no part. Zero where some wrench cannot be
 /// made by contact forces at all.
-pub fn smallest_singular_value(setup: &Setup<'_>) -> Result<f64, WrenchError> {
-    let length = setup.validate()?;
+pub fn smallest_singular_value(model: &GraspModel<'_>) -> Result<f64, WrenchError> {
+    let length = model.validate()?;
     let identity = Matrix3::identity();
-    let mut map = DMatrix::zeros(6, 3 * setup.contacts.len());
-    for (i, contact) in setup.contacts.iter().enumerate() {
+    let mut map = DMatrix::zeros(6, 3 * model.contacts.len());
+    for (i, contact) in model.contacts.iter().enumerate() {
         for axis in 0..3 {
             let force = identity.column(axis).into_owned();
-            let column = wrench(&force, &contact.position, setup.centre, length);
+            let column = wrench(&force, &contact.position, model.centre, length);
             map.set_column(3 * i + axis, &column);
         }
     }

@@ -2,7 +2,8 @@
 
 use super::epsilon::{Epsilon, QualityError};
 use super::workspace::{Workspace, requested_gap};
-use crate::finger::{Cone, Setup};
+use crate::cone::Cone;
+use crate::grasp_model::GraspModel;
 use crate::hull::plane::{V6, add_scaled, dot};
 use crate::hull::support::Support;
 
@@ -11,9 +12,12 @@ use crate::hull::support::Support;
 ///
 /// The support function of a sum is the sum of the support functions, so the (k+1)^m sums are never
 /// listed: an expansion costs no more than for the L¹ hull, though more of them are needed.
-pub fn epsilon_linf(setup: &Setup<'_>, workspace: &mut Workspace) -> Result<Epsilon, QualityError> {
-    workspace.load(setup)?;
-    let gap = requested_gap(setup.convention.edges);
+pub fn epsilon_linf(
+    model: &GraspModel<'_>,
+    workspace: &mut Workspace,
+) -> Result<Epsilon, QualityError> {
+    workspace.load(model)?;
+    let gap = requested_gap(model.convention.edges);
     let reach: f64 = workspace.cones.iter().map(Cone::reach).sum();
     let toward = workspace
         .cones

@@ -1,70 +1,15 @@
 //! The signed margin of a grasp and the facets that decide it.
 
 use super::epsilon::QualityError;
-use super::polish::touching_face;
+use super::facet::ActiveFacet;
+use super::touching_face::touching_face;
 use super::workspace::{Workspace, requested_gap};
-use crate::finger::Setup;
+use crate::grasp_model::GraspModel;
 use crate::hull::min_norm::{Corral, Effort, Nearest};
 use crate::hull::plane::{V6, norm, scale, sub};
 use crate::hull::search::Ball;
 use crate::hull::support::PointList;
-use crate::wrench::Wrench;
 use nalgebra::{Matrix6, Vector6};
-
-/// A wrench on a facet of the hull, and its share in the facet's point nearest to the origin.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Carrier {
-    /// The contact whose cone it belongs to.
-    pub contact: usize,
-    /// The wrench.
-    pub wrench: Wrench,
-    /// Its barycentric coordinate λ; all of a facet's sum to one.
-    pub weight: f64,
-}
-
-/// A facet of the hull: normal·w ≤ offset for every wrench w, with equality for its carriers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ActiveFacet {
-    /// The distance of its plane from the origin, negative when the origin lies beyond it.
-    pub offset: f64,
-    /// The outward unit normal: the wrench direction in which the grasp is that weak.
-    pub normal: Wrench,
-    carriers: [Carrier; 7],
-    count: usize,
-}
-
-impl ActiveFacet {
-    /// The wrenches that carry it; Σ weight·wrench = offset·normal.
-    pub fn carriers(&self) -> &[Carrier] {
-        &self.carriers[..self.count]
-    }
-
-    pub(crate) fn new(
-        offset: f64,
-        normal: &V6,
-        carriers: impl IntoIterator<Item = (usize, V6, f64)>,
-    ) -> ActiveFacet {
-        let mut facet = ActiveFacet {
-            offset,
-            normal: (*normal).into(),
-            carriers: [Carrier {
-                contact: 0,
-                wrench: Wrench::zeros(),
-                weight: 0.0,
-            }; 7],
-            count: 0,
-        };
-        for (slot, (contact, wrench, weight)) in facet.carriers.iter_mut().zip(carriers) {
-            *slot = Carrier {
-                contact,
-                wrench: wrench.into(),
-                weight,
-            };
-            facet.count += 1;
-        }
-        facet
-    }
-}
 
 /// How far a grasp is from losing, or from gaining, force closure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,9 +33,9 @@ pub struct Margin {
 /// its gradient follows from the facet on both sides (`facet_gradient`). For round cones the facet is
 /// the face that the ball touches, found to rounding by Newton's method where the touching point is
 /// regular, whatever the width of the interval.
-pub fn margin(setup: &Setup<'_>, workspace: &mut Workspace) -> Result<Margin, QualityError> {
-    workspace.load_next(setup)?;
-    match workspace.ball(requested_gap(setup.convention.edges)) {
+pub fn margin(model: &GraspModel<'_>, workspace: &mut Workspace) -> Result<Margin, QualityError> {
+    workspace.load_next(model)?;
+    match workspace.ball(requested_gap(model.convention.edges)) {
         Ball::Open { direction } => Ok(outside(workspace, &direction)),
         Ball::Closed {
             lower,
@@ -125,18 +70,18 @@ pub fn margin(setup: &Setup<'_>, workspace: &mut Workspace) -> Result<Margin, Qu
 /// Simplices of one plane are one facet where a whole pyramid's base makes them several; where points
 /// of different contacts happen to lie in one plane they appear each, since they will part.
 pub fn near_active_facets(
-    setup: &Setup<'_>,
+    model: &GraspModel<'_>,
     band: f64,
     workspace: &mut Workspace,
     out: &mut Vec<ActiveFacet>,
 ) -> Result<(), QualityError> {
     out.clear();
-    let Margin { closed, facet, .. } = margin(setup, workspace)?;
+    let Margin { closed, facet, .. } = margin(model, workspace)?;
     if !closed {
         return Ok(());
     }
     out.push(facet);
-    let gap = requested_gap(setup.convention.edges);
+    let gap = requested_gap(model.convention.edges);
     let level = facet.offset + band;
     let nearest = workspace.finish(level, gap);
     let mut near = std::mem::take(&mut workspace.near);

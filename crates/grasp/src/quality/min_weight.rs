@@ -1,22 +1,17 @@
 //! The min-weight quality: how evenly the wrenches can balance each other.
 
 use super::epsilon::QualityError;
-use crate::contact::Contact;
-use crate::convention::Convention;
+use crate::grasp_model::GraspModel;
 use crate::linear::{Outcome, Programme};
-use crate::wrench::{Wrench, wrenches};
-use nalgebra::Point3;
+use crate::wrench::Wrench;
+use crate::wrenches::wrenches;
 
 /// n·ℓ* with ℓ* the largest ℓ such that Σ α_i w_i = 0, Σ α_i = 1 and all α_i ≥ ℓ (FRoGGeR's metric).
 ///
 /// 1 where equal weights balance, positive exactly for balanced grasps, negative for open ones; None
 /// where no weights of any sign balance. Polygonal cones only. Independent of the torque length.
-pub fn min_weight(
-    contacts: &[Contact],
-    centre: &Point3<f64>,
-    convention: &Convention,
-) -> Result<Option<f64>, QualityError> {
-    Ok(min_weight_of(&wrenches(contacts, centre, convention)?))
+pub fn min_weight(model: &GraspModel<'_>) -> Result<Option<f64>, QualityError> {
+    Ok(min_weight_of(&wrenches(model)?))
 }
 
 /// The same for a plain list of wrenches.

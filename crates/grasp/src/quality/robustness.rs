@@ -1,31 +1,31 @@
 //! How much friction a grasp needs, and how far it may move, to stay closed.
 
-use super::epsilon::{QualityError, epsilon_of};
+use super::epsilon::{QualityError, epsilon};
 use super::workspace::Workspace;
 use crate::convention::{Convention, TorqueLength};
-use crate::finger::Setup;
+use crate::grasp_model::GraspModel;
 use crate::hull::search::Ball;
 use crate::wrench::WrenchError;
 
 /// The friction coefficient at which a grasp starts to be force-closed, to a relative 1e-9.
 ///
-/// Found by bisection on hard fingers with one common μ (the fingers of the setup are not asked);
+/// Found by bisection on point contacts with one common μ (the contact models are ignored);
 /// closure is monotone in μ. None if the grasp is not closed even at `largest`.
 pub fn least_friction(
-    setup: &Setup<'_>,
+    model: &GraspModel<'_>,
     largest: f64,
     workspace: &mut Workspace,
 ) -> Result<Option<f64>, QualityError> {
     let mut convention = Convention {
         friction: largest,
-        ..setup.convention.clone()
+        ..model.convention.clone()
     };
     let mut closed = |friction: f64| -> Result<bool, WrenchError> {
         convention.friction = friction;
-        workspace.load(&Setup {
+        workspace.load(&GraspModel {
             convention: &convention,
-            fingers: &[],
-            ..*setup
+            contact_models: &[],
+            ..*model
         })?;
         Ok(matches!(workspace.ball(f64::INFINITY), Ball::Closed { .. }))
     };
@@ -53,24 +53,24 @@ pub fn least_friction(
 /// contact from the centre and d the distance of Sec. III-C (`distance`). It holds for round cones,
 /// and for pyramids whose frames are carried along; it supposes a fixed torque length and is None
 /// under `TorqueLength::MaxContactDistance`.
-pub fn lipschitz_constant(setup: &Setup<'_>) -> Result<Option<f64>, WrenchError> {
-    let length = setup.validate()?;
-    if setup.convention.torque_length == TorqueLength::MaxContactDistance {
+pub fn lipschitz_constant(model: &GraspModel<'_>) -> Result<Option<f64>, WrenchError> {
+    let length = model.validate()?;
+    if model.convention.torque_length == TorqueLength::MaxContactDistance {
         return Ok(None);
     }
-    let indices = 0..setup.contacts.len();
+    let indices = 0..model.contacts.len();
     let force = indices
         .clone()
-        .map(|i| setup.edge_scale(i) * setup.finger(i).limits().0.hypot(1.0))
+        .map(|i| model.edge_scale(i) * model.contact_model(i).limits().0.hypot(1.0))
         .fold(0.0, f64::max);
     // Torsion about the normal turns with it.
     let torsion = indices
-        .map(|i| setup.edge_scale(i) * setup.finger(i).limits().1)
+        .map(|i| model.edge_scale(i) * model.contact_model(i).limits().1)
         .fold(0.0, f64::max);
-    let radius = setup
+    let radius = model
         .contacts
         .iter()
-        .map(|c| (c.position - setup.centre).norm())
+        .map(|c| (c.position - model.centre).norm())
         .fold(0.0, f64::max);
     let torque = (force * (1.0 + radius) + torsion) / length;
     Ok(Some(force.hypot(torque)))
@@ -81,11 +81,11 @@ pub fn lipschitz_constant(setup: &Setup<'_>) -> Result<Option<f64>, WrenchError>
 /// Every grasp about the same centre and nearer than Q/K is closed under round cones. 0 for an open
 /// grasp; None where there is no constant (`lipschitz_constant`).
 pub fn closed_radius(
-    setup: &Setup<'_>,
+    model: &GraspModel<'_>,
     workspace: &mut Workspace,
 ) -> Result<Option<f64>, QualityError> {
-    let Some(constant) = lipschitz_constant(setup)? else {
+    let Some(constant) = lipschitz_constant(model)? else {
         return Ok(None);
     };
-    Ok(Some(epsilon_of(setup, workspace)?.lower / constant))
+    Ok(Some(epsilon(model, workspace)?.lower / constant))
 }

@@ -1,8 +1,9 @@
 //! Caller-owned scratch: a grasp laid out as cones and points, and the search over them.
 
+use crate::cone::{Cone, RoundSource, toward};
 use crate::convention::Edges;
-use crate::finger::{Cone, RoundSource, Setup, toward};
 use crate::friction::angle;
+use crate::grasp_model::GraspModel;
 use crate::hull::min_norm::{Effort, Nearest};
 use crate::hull::plane::V6;
 use crate::hull::search::{Ball, RELATIVE_TOLERANCE, Search};
@@ -22,7 +23,7 @@ pub struct Workspace {
     order: Vec<u32>,
     circle: Vec<(f64, f64)>,
     pub(crate) round: bool,
-    follows: bool,
+    warm_start: bool,
     /// Whether the polytope of the last search belongs to the points as they were then.
     fits: bool,
     owners_before: Vec<u32>,
@@ -46,9 +47,9 @@ impl Workspace {
     /// Answers agree with those of [`Workspace::new`] to rounding, not to the last bit: they depend
     /// on the grasps before. The nearer those are the less is computed, next to nothing for the steps
     /// of differences; far ones cost a new search.
-    pub fn following() -> Self {
+    pub fn with_warm_start() -> Self {
         Self {
-            follows: true,
+            warm_start: true,
             ..Self::default()
         }
     }
@@ -64,20 +65,20 @@ impl Workspace {
     }
 
     /// [`Workspace::load`], in the last grasp's order of contacts where its polytope may serve again.
-    pub(crate) fn load_next(&mut self, setup: &Setup<'_>) -> Result<(), WrenchError> {
-        let Edges::Polygon(count) = setup.convention.edges else {
-            return self.load(setup);
+    pub(crate) fn load_next(&mut self, model: &GraspModel<'_>) -> Result<(), WrenchError> {
+        let Edges::Polygon(count) = model.convention.edges else {
+            return self.load(model);
         };
-        if !(self.follows && self.fits && self.order.len() == setup.contacts.len()) {
-            return self.load(setup);
+        if !(self.warm_start && self.fits && self.order.len() == model.contacts.len()) {
+            return self.load(model);
         }
         self.fits = false;
-        let length = setup.validate()?;
-        self.lay_out_cones(setup, length);
+        let length = model.validate()?;
+        self.lay_out_cones(model, length);
         std::mem::swap(&mut self.owners, &mut self.owners_before);
         self.lay_out_points(count);
         if self.owners != self.owners_before {
-            return self.load(setup);
+            return self.load(model);
         }
         self.fits = true;
         Ok(())
@@ -85,13 +86,13 @@ impl Workspace {
 
     /// Lays out a grasp. Contacts are taken in the order of their coordinates, so that results are
     /// the same to the last bit in whatever order they come.
-    pub(crate) fn load(&mut self, setup: &Setup<'_>) -> Result<(), WrenchError> {
+    pub(crate) fn load(&mut self, model: &GraspModel<'_>) -> Result<(), WrenchError> {
         self.fits = false;
-        let length = setup.validate()?;
+        let length = model.validate()?;
         self.order.clear();
-        self.order.extend(0..setup.contacts.len() as u32);
+        self.order.extend(0..model.contacts.len() as u32);
         let key = |&i: &u32| {
-            let c = &setup.contacts[i as usize];
+            let c = &model.contacts[i as usize];
             let (p, n) = (&c.position, &c.inward_normal);
             [p.x, p.y, p.z, n.x, n.y, n.z]
         };
@@ -101,8 +102,8 @@ impl Workspace {
                 o.then(x.total_cmp(&y))
             })
         });
-        self.lay_out_cones(setup, length);
-        self.round = match setup.convention.edges {
+        self.lay_out_cones(model, length);
+        self.round = match model.convention.edges {
             Edges::Round { .. } => true,
             Edges::Polygon(count) => {
                 self.lay_out_points(count);
@@ -112,10 +113,10 @@ impl Workspace {
         Ok(())
     }
 
-    fn lay_out_cones(&mut self, setup: &Setup<'_>, length: f64) {
+    fn lay_out_cones(&mut self, model: &GraspModel<'_>, length: f64) {
         self.cones.clear();
         for &contact in &self.order {
-            self.cones.push(Cone::new(setup, contact as usize, length));
+            self.cones.push(Cone::new(model, contact as usize, length));
         }
     }
 
@@ -161,7 +162,7 @@ impl Workspace {
 
     fn ball_anew(&mut self, gap: f64) -> Ball {
         let ball = self.search_ball(gap);
-        self.fits = self.follows && !self.round && matches!(ball, Ball::Closed { .. });
+        self.fits = self.warm_start && !self.round && matches!(ball, Ball::Closed { .. });
         ball
     }
 

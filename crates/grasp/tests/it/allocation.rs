@@ -3,7 +3,7 @@
 
 use crate::common::{anywhere, around, generator, unit};
 use grasp::{
-    ActiveFacet, Contact, Edges, FrameRule, Gradient, Setup, Workspace, epsilon_linf, epsilon_of,
+    ActiveFacet, Contact, Edges, FrameRule, Gradient, GraspModel, Workspace, epsilon, epsilon_linf,
     facet_gradient, margin, near_active_facets,
 };
 use nalgebra::Point3;
@@ -48,24 +48,24 @@ struct Scratch {
 fn pass(grasps: &[Vec<Contact>], edges: Edges, scratch: &mut Scratch) {
     let convention = unit(0.8, edges);
     for contacts in grasps {
-        let setup = Setup {
+        let model = GraspModel {
             contacts,
             centre: &Point3::origin(),
             convention: &convention,
-            fingers: &[],
+            contact_models: &[],
         };
         let workspace = &mut scratch.workspace;
-        epsilon_of(&setup, workspace).unwrap();
-        epsilon_linf(&setup, workspace).unwrap();
-        let found = margin(&setup, workspace).unwrap();
+        epsilon(&model, workspace).unwrap();
+        epsilon_linf(&model, workspace).unwrap();
+        let found = margin(&model, workspace).unwrap();
         facet_gradient(
-            &setup,
+            &model,
             &found.facet,
             FrameRule::Tangent,
             &mut scratch.gradient,
         )
         .unwrap();
-        near_active_facets(&setup, 1e-3, workspace, &mut scratch.facets).unwrap();
+        near_active_facets(&model, 1e-3, workspace, &mut scratch.facets).unwrap();
     }
 }
 

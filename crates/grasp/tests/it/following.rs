@@ -2,7 +2,8 @@
 
 use crate::common::{anywhere, around, generator, in_ball, unit};
 use grasp::{
-    ActiveFacet, Contact, Edges, Finger, Setup, Workspace, epsilon_of, margin, near_active_facets,
+    ActiveFacet, Contact, ContactModel, Edges, GraspModel, Workspace, epsilon, margin,
+    near_active_facets,
 };
 use nalgebra::{Point3, Unit};
 use proptest::prelude::*;
@@ -41,10 +42,10 @@ proptest! {
     ) {
         let mut rng = generator(seed);
         let convention = unit(0.9, Edges::Polygon(edges));
-        let finger = Finger::Soft { friction: 0.9, torsion: 0.2 };
-        let fingers = vec![finger; if soft { count } else { 0 }];
+        let finger = ContactModel::Soft { friction: 0.9, torsion: 0.2 };
+        let contact_models = vec![finger; if soft { count } else { 0 }];
         let mut contacts = around(&mut rng, count, 1.0);
-        let (mut following, mut anew) = (Workspace::following(), Workspace::new());
+        let (mut following, mut anew) = (Workspace::with_warm_start(), Workspace::new());
         let mut facets: [Vec<ActiveFacet>; 2] = Default::default();
         for step in 0..40 {
             // Large steps and small ones in turn, as of an ascent with differences.
@@ -54,16 +55,16 @@ proptest! {
             if step % 13 == 12 {
                 contacts = anywhere(&mut rng, count);
             }
-            let setup = Setup { contacts: &contacts, centre: &Point3::origin(), convention: &convention, fingers: &fingers };
-            let a = epsilon_of(&setup, &mut following).unwrap();
-            let b = epsilon_of(&setup, &mut anew).unwrap();
+            let model = GraspModel { contacts: &contacts, centre: &Point3::origin(), convention: &convention, contact_models: &contact_models };
+            let a = epsilon(&model, &mut following).unwrap();
+            let b = epsilon(&model, &mut anew).unwrap();
             prop_assert_eq!(a.closed, b.closed);
             prop_assert!((a.lower - b.lower).abs() <= 1e-11 && (a.upper - b.upper).abs() <= 1e-11, "{a:?} {b:?}");
-            let (a, b) = (margin(&setup, &mut following).unwrap(), margin(&setup, &mut anew).unwrap());
+            let (a, b) = (margin(&model, &mut following).unwrap(), margin(&model, &mut anew).unwrap());
             prop_assert!((a.value - b.value).abs() <= 1e-11);
             if step % 4 == 0 {
-                near_active_facets(&setup, 0.05, &mut following, &mut facets[0]).unwrap();
-                near_active_facets(&setup, 0.05, &mut anew, &mut facets[1]).unwrap();
+                near_active_facets(&model, 0.05, &mut following, &mut facets[0]).unwrap();
+                near_active_facets(&model, 0.05, &mut anew, &mut facets[1]).unwrap();
                 same_planes(&facets[0], &facets[1])?;
                 same_planes(&facets[1], &facets[0])?;
             }
@@ -90,21 +91,21 @@ fn differences_cost_a_fraction_of_a_new_search() {
     let mut rng = generator(5);
     let convention = unit(0.9, Edges::Polygon(10));
     let (mut made, mut anew) = (0, 0);
-    let mut following = Workspace::following();
+    let mut following = Workspace::with_warm_start();
     let mut plain = Workspace::new();
     for _ in 0..30 {
         let contacts = around(&mut rng, 3, 1.0);
         for (step, workspace) in (0..7).flat_map(|s| [(s, true), (s, false)]) {
             let near = moved(&contacts, Some(step), 1e-5, &mut rng);
-            let setup = Setup {
+            let model = GraspModel {
                 contacts: &near,
                 centre: &Point3::origin(),
                 convention: &convention,
-                fingers: &[],
+                contact_models: &[],
             };
             if workspace {
                 let before = following.facets_made();
-                epsilon_of(&setup, &mut following).unwrap();
+                epsilon(&model, &mut following).unwrap();
                 let after = following.facets_made();
                 // A new search counts from nothing.
                 made += if after >= before && step > 0 {
@@ -113,7 +114,7 @@ fn differences_cost_a_fraction_of_a_new_search() {
                     after
                 };
             } else {
-                epsilon_of(&setup, &mut plain).unwrap();
+                epsilon(&model, &mut plain).unwrap();
                 anew += plain.facets_made();
             }
         }

@@ -2,8 +2,8 @@
 
 use crate::common::{around, generator, in_ball, unit};
 use grasp::{
-    Contact, Edges, Finger, Resistance, Setup, Workspace, Wrench, closed_radius, epsilon_of,
-    least_friction, min_weight, resist, smallest_singular_value, wrench, wrenches,
+    Contact, ContactModel, Edges, GraspModel, Resistance, Workspace, Wrench, closed_radius,
+    epsilon, least_friction, min_weight, resist, smallest_singular_value, wrench, wrenches,
 };
 use nalgebra::{Point3, Unit, Vector3};
 
@@ -24,18 +24,18 @@ fn two_fingers_hold_a_weight_by_friction() {
         (Edges::Round { tolerance: 1e-6 }, 1e-7),
     ] {
         let convention = unit(0.5, edges);
-        let setup = Setup {
+        let model = GraspModel {
             contacts: &contacts,
             centre: &centre,
             convention: &convention,
-            fingers: &[],
+            contact_models: &[],
         };
         let Resistance::Holds {
             forces,
             largest_normal_force,
             bound,
             ..
-        } = resist(&setup, &weight).unwrap()
+        } = resist(&model, &weight).unwrap()
         else {
             panic!("friction holds it");
         };
@@ -46,25 +46,25 @@ fn two_fingers_hold_a_weight_by_friction() {
         assert!((sum - Vector3::z()).norm() <= 1e-9);
         // A torque about the line through both has nothing against it.
         let twist = Wrench::new(0.0, 0.0, 0.0, 1.0, 0.0, 0.0);
-        let Resistance::Fails { proof } = resist(&setup, &twist).unwrap() else {
+        let Resistance::Fails { proof } = resist(&model, &twist).unwrap() else {
             panic!("points cannot hold a twist");
         };
         assert!(proof.dot(&twist) > 0.1);
-        let soft = [Finger::Soft {
+        let soft = [ContactModel::Soft {
             friction: 0.5,
             torsion: 0.25,
         }; 2];
-        let setup = Setup {
-            fingers: &soft,
-            ..setup
+        let model = GraspModel {
+            contact_models: &soft,
+            ..model
         };
         let Resistance::Holds {
             largest_normal_force,
             torsions,
             ..
-        } = resist(&setup, &twist).unwrap()
+        } = resist(&model, &twist).unwrap()
         else {
-            panic!("soft fingers hold a twist");
+            panic!("soft contact_models hold a twist");
         };
         assert!((largest_normal_force - 2.0).abs() <= tolerance);
         assert!((torsions[0].abs() - 0.5).abs() <= 1e-7);
@@ -83,16 +83,16 @@ fn closed_grasps_resist_every_wrench_within_their_cones() {
             Edges::Round { tolerance: 1e-6 }
         };
         let convention = unit(0.7, edges);
-        let setup = Setup {
+        let model = GraspModel {
             contacts: &contacts,
             centre: &Point3::origin(),
             convention: &convention,
-            fingers: &[],
+            contact_models: &[],
         };
         let (a, b) = (in_ball(&mut rng), in_ball(&mut rng));
         let external = Wrench::new(a.x, a.y, a.z, b.x, b.y, b.z);
-        let found = resist(&setup, &external).unwrap();
-        let quality = epsilon_of(&setup, &mut workspace).unwrap();
+        let found = resist(&model, &external).unwrap();
+        let quality = epsilon(&model, &mut workspace).unwrap();
         match found {
             Resistance::Holds {
                 forces,
@@ -102,7 +102,7 @@ fn closed_grasps_resist_every_wrench_within_their_cones() {
                 let total = contacts
                     .iter()
                     .zip(&forces)
-                    .map(|(c, f)| wrench(f, &c.position, setup.centre, 1.0))
+                    .map(|(c, f)| wrench(f, &c.position, model.centre, 1.0))
                     .fold(external, |s, w| s + w);
                 assert!(total.norm() <= 1e-8, "{total}");
                 for (c, f) in contacts.iter().zip(&forces) {
@@ -120,7 +120,7 @@ fn closed_grasps_resist_every_wrench_within_their_cones() {
             Resistance::Fails { proof } => {
                 assert!(!quality.closed);
                 assert!(proof.dot(&external) > 0.0);
-                if let Ok(list) = wrenches(&contacts, setup.centre, &convention) {
+                if let Ok(list) = wrenches(&model) {
                     assert!(list.iter().all(|w| w.dot(&proof) >= -1e-8));
                 }
             }
@@ -136,23 +136,23 @@ fn least_friction_splits_open_from_closed() {
     for _ in 0..40 {
         let contacts = around(&mut rng, 3, 1.0);
         let convention = unit(1.0, Edges::Polygon(8));
-        let setup = Setup {
+        let model = GraspModel {
             contacts: &contacts,
             centre: &Point3::origin(),
             convention: &convention,
-            fingers: &[],
+            contact_models: &[],
         };
-        let Some(least) = least_friction(&setup, 3.0, &mut workspace).unwrap() else {
+        let Some(least) = least_friction(&model, 3.0, &mut workspace).unwrap() else {
             continue;
         };
         found_some += 1;
         for (factor, closed) in [(1.001, true), (0.999, false)] {
             let convention = unit(least * factor, Edges::Polygon(8));
-            let setup = Setup {
+            let model = GraspModel {
                 convention: &convention,
-                ..setup
+                ..model
             };
-            let found = epsilon_of(&setup, &mut workspace).unwrap();
+            let found = epsilon(&model, &mut workspace).unwrap();
             assert_eq!(found.closed, closed, "{least}");
         }
     }
@@ -166,13 +166,13 @@ fn grasps_within_the_closed_radius_stay_closed() {
     for _ in 0..40 {
         let contacts = around(&mut rng, 4, 1.0);
         let convention = unit(0.8, Edges::Round { tolerance: 1e-4 });
-        let setup = Setup {
+        let model = GraspModel {
             contacts: &contacts,
             centre: &Point3::origin(),
             convention: &convention,
-            fingers: &[],
+            contact_models: &[],
         };
-        let radius = closed_radius(&setup, &mut workspace).unwrap().unwrap();
+        let radius = closed_radius(&model, &mut workspace).unwrap().unwrap();
         if radius <= 0.0 {
             continue;
         }
@@ -183,11 +183,11 @@ fn grasps_within_the_closed_radius_stay_closed() {
                 ..*c
             })
             .collect();
-        let setup = Setup {
+        let model = GraspModel {
             contacts: &moved,
-            ..setup
+            ..model
         };
-        assert!(epsilon_of(&setup, &mut workspace).unwrap().closed);
+        assert!(epsilon(&model, &mut workspace).unwrap().closed);
     }
 }
 
@@ -205,23 +205,23 @@ fn symmetric_grasps_have_known_values() {
         .collect();
     let centre = Point3::origin();
     let convention = unit(0.5, Edges::Polygon(8));
-    let weight = min_weight(&contacts, &centre, &convention)
+    let weight = min_weight(&GraspModel::new(&contacts, &centre, &convention))
         .unwrap()
         .unwrap();
     assert!((weight - 1.0).abs() <= 1e-9);
-    let setup = Setup {
+    let model = GraspModel {
         contacts: &contacts,
         centre: &centre,
         convention: &convention,
-        fingers: &[],
+        contact_models: &[],
     };
     // G Gᵀ = diag(3, 3, 3, 3/2, 3/2, 3) for three points of the unit circle.
-    let smallest = smallest_singular_value(&setup).unwrap();
+    let smallest = smallest_singular_value(&model).unwrap();
     assert!((smallest - 1.5_f64.sqrt()).abs() <= 1e-12);
     let pair = opposite();
-    let setup = Setup {
+    let model = GraspModel {
         contacts: &pair,
-        ..setup
+        ..model
     };
-    assert!(smallest_singular_value(&setup).unwrap() <= 1e-12);
+    assert!(smallest_singular_value(&model).unwrap() <= 1e-12);
 }

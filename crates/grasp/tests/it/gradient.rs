@@ -2,8 +2,8 @@
 
 use crate::common::{anywhere, around, generator, in_ball, unit};
 use grasp::{
-    Contact, Convention, EdgeNorm, Edges, Finger, FrameRule, Gradient, Setup, TangentRule,
-    TorqueLength, Workspace, facet_gradient, margin, near_active_facets,
+    Contact, ContactModel, Convention, EdgeNorm, Edges, FrameRule, Gradient, GraspModel,
+    TangentRule, TorqueLength, Workspace, facet_gradient, margin, near_active_facets,
 };
 use nalgebra::{Point3, Unit, Vector3};
 
@@ -13,21 +13,21 @@ struct Case {
     contacts: Vec<Contact>,
     centre: Point3<f64>,
     convention: Convention,
-    fingers: Vec<Finger>,
+    contact_models: Vec<ContactModel>,
 }
 
 impl Case {
-    fn setup(&self) -> Setup<'_> {
-        Setup {
+    fn model(&self) -> GraspModel<'_> {
+        GraspModel {
             contacts: &self.contacts,
             centre: &self.centre,
             convention: &self.convention,
-            fingers: &self.fingers,
+            contact_models: &self.contact_models,
         }
     }
 
     fn margin(&self) -> f64 {
-        let found = margin(&self.setup(), &mut Workspace::new()).unwrap();
+        let found = margin(&self.model(), &mut Workspace::new()).unwrap();
         found.facet.offset
     }
 
@@ -44,7 +44,7 @@ impl Case {
                 contacts,
                 centre: self.centre + motion.centre * s,
                 convention: self.convention.clone(),
-                fingers: self.fingers.clone(),
+                contact_models: self.contact_models.clone(),
             }
             .margin()
         };
@@ -83,15 +83,15 @@ fn along(gradient: &Gradient, motion: &Gradient) -> f64 {
 fn away_from_ties(case: &Case) -> bool {
     let mut facets = Vec::new();
     let mut workspace = Workspace::new();
-    near_active_facets(&case.setup(), 1e-4, &mut workspace, &mut facets).unwrap();
+    near_active_facets(&case.model(), 1e-4, &mut workspace, &mut facets).unwrap();
     facets.len() == 1
 }
 
 fn compare(case: &Case, rng: &mut rand_chacha::ChaCha8Rng, tolerance: f64) {
-    let found = margin(&case.setup(), &mut Workspace::new()).unwrap();
+    let found = margin(&case.model(), &mut Workspace::new()).unwrap();
     let mut gradient = Gradient::default();
     facet_gradient(
-        &case.setup(),
+        &case.model(),
         &found.facet,
         FrameRule::Tangent,
         &mut gradient,
@@ -121,9 +121,9 @@ fn closed_polygons_of_every_kind() {
         if index % 5 == 1 {
             convention.torque_length = TorqueLength::MaxContactDistance;
         }
-        let fingers = if index % 3 == 2 {
-            let mut all = vec![Finger::Hard { friction: 0.6 }; count];
-            all[0] = Finger::Soft {
+        let contact_models = if index % 3 == 2 {
+            let mut all = vec![ContactModel::Point { friction: 0.6 }; count];
+            all[0] = ContactModel::Soft {
                 friction: 0.9,
                 torsion: 0.2,
             };
@@ -135,9 +135,9 @@ fn closed_polygons_of_every_kind() {
             contacts: around(&mut rng, count, 1.0),
             centre: Point3::from(in_ball(&mut rng) * 0.1),
             convention,
-            fingers,
+            contact_models,
         };
-        let closed = margin(&case.setup(), &mut Workspace::new()).unwrap().closed;
+        let closed = margin(&case.model(), &mut Workspace::new()).unwrap().closed;
         if closed && away_from_ties(&case) {
             compare(&case, &mut rng, 1e-6);
             compared += 1;
@@ -155,9 +155,9 @@ fn round_cones_touch_at_one_exact_face() {
             contacts: around(&mut rng, 3, 1.0),
             centre: Point3::from(in_ball(&mut rng) * 0.1),
             convention: unit(0.8, Edges::Round { tolerance: 1e-4 }),
-            fingers: Vec::new(),
+            contact_models: Vec::new(),
         };
-        let found = margin(&case.setup(), &mut Workspace::new()).unwrap();
+        let found = margin(&case.model(), &mut Workspace::new()).unwrap();
         // One carrier a contact: the touching face, not a facet of the inner polytope.
         if !found.closed || found.facet.carriers().len() > 3 {
             continue;
@@ -166,9 +166,9 @@ fn round_cones_touch_at_one_exact_face() {
             convention: unit(0.8, Edges::Round { tolerance: 1e-9 }),
             contacts: case.contacts.clone(),
             centre: case.centre,
-            fingers: Vec::new(),
+            contact_models: Vec::new(),
         };
-        let narrow = margin(&exact.setup(), &mut Workspace::new()).unwrap();
+        let narrow = margin(&exact.model(), &mut Workspace::new()).unwrap();
         assert!(found.facet.offset <= narrow.upper + 1e-5);
         if (found.facet.offset - narrow.facet.offset).abs() <= 1e-10 {
             compare(&case, &mut rng, 1e-6);
@@ -187,9 +187,9 @@ fn open_grasps_have_a_gradient_too() {
             contacts: anywhere(&mut rng, 3),
             centre: Point3::origin(),
             convention: unit(0.5, Edges::Polygon(8)),
-            fingers: Vec::new(),
+            contact_models: Vec::new(),
         };
-        let found = margin(&case.setup(), &mut Workspace::new()).unwrap();
+        let found = margin(&case.model(), &mut Workspace::new()).unwrap();
         // A carrier of hardly any weight means another face is about to take over.
         let firm = found.facet.carriers().iter().all(|c| c.weight > 1e-3);
         if !found.closed && found.value < -1e-2 && firm {
@@ -206,13 +206,13 @@ fn carriers_add_up_to_the_foot_of_the_facet() {
     for _ in 0..50 {
         let contacts = around(&mut rng, 3, 1.0);
         let convention = unit(1.0, Edges::Polygon(8));
-        let setup = Setup {
+        let model = GraspModel {
             contacts: &contacts,
             centre: &Point3::origin(),
             convention: &convention,
-            fingers: &[],
+            contact_models: &[],
         };
-        near_active_facets(&setup, 0.05, &mut Workspace::new(), &mut facets).unwrap();
+        near_active_facets(&model, 0.05, &mut Workspace::new(), &mut facets).unwrap();
         for facet in &facets {
             let sum: f64 = facet.carriers().iter().map(|c| c.weight).sum();
             assert!((sum - 1.0).abs() <= 1e-9);

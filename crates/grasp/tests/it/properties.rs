@@ -3,21 +3,16 @@
 use crate::common::{generator, in_ball, on_sphere, unit};
 use grasp::hull::ConvexHull;
 use grasp::{
-    ActiveFacet, Contact, Convention, EdgeNorm, Edges, Epsilon, Finger, Grasp, Setup, TorqueLength,
-    Workspace, distance, epsilon, epsilon_batch, epsilon_linf, epsilon_of, force_closed,
-    lipschitz_constant, margin, near_active_facets, wrenches,
+    ActiveFacet, Contact, ContactModel, Convention, EdgeNorm, Edges, Epsilon, Grasp, GraspModel,
+    TorqueLength, Workspace, distance, epsilon, epsilon_linf, force_closed, lipschitz_constant,
+    margin, near_active_facets, wrenches,
 };
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use proptest::prelude::*;
 
 fn quality(contacts: &[Contact], convention: &Convention) -> Epsilon {
-    epsilon(
-        contacts,
-        &Point3::origin(),
-        convention,
-        &mut Workspace::new(),
-    )
-    .unwrap()
+    let centre = Point3::origin();
+    epsilon(&model(contacts, &centre, convention), &mut Workspace::new()).unwrap()
 }
 
 fn round(friction: f64, tolerance: f64) -> Convention {
@@ -56,17 +51,12 @@ fn strewn(count: std::ops::Range<usize>) -> impl Strategy<Value = Vec<Contact>> 
     prop::collection::vec(contact, count)
 }
 
-fn setup<'a>(
+fn model<'a>(
     contacts: &'a [Contact],
     centre: &'a Point3<f64>,
     convention: &'a Convention,
-) -> Setup<'a> {
-    Setup {
-        contacts,
-        centre,
-        convention,
-        fingers: &[],
-    }
+) -> GraspModel<'a> {
+    GraspModel::new(contacts, centre, convention)
 }
 
 proptest! {
@@ -78,7 +68,7 @@ proptest! {
         edges in 3_usize..11,
     ) {
         let convention = unit(0.9, Edges::Polygon(edges));
-        let list = wrenches(&contacts, &Point3::origin(), &convention).unwrap();
+        let list = wrenches(&model(&contacts, &Point3::origin(), &convention)).unwrap();
         let fast = quality(&contacts, &convention);
         let full = ConvexHull::new(&list).map_or(0.0, |hull| hull.ball_radius().max(0.0));
         prop_assert!((fast.quality - full).abs() <= 1e-10);
@@ -123,9 +113,9 @@ proptest! {
             })
             .collect();
         let mut workspace = Workspace::new();
-        let a = epsilon(&contacts, &centre, &convention, &mut workspace).unwrap();
+        let a = epsilon(&model(&contacts, &centre, &convention), &mut workspace).unwrap();
         let to = rotation * centre + shift;
-        let b = epsilon(&moved, &to, &convention, &mut workspace).unwrap();
+        let b = epsilon(&model(&moved, &to, &convention), &mut workspace).unwrap();
         prop_assert!(a.lower <= b.upper + 1e-12 && b.lower <= a.upper + 1e-12);
     }
 
@@ -155,7 +145,7 @@ proptest! {
         let found = quality(&contacts, &convention);
         // Between these the two tests may differ.
         prop_assume!(!(found.quality > 0.0 && found.quality < 1e-7));
-        let closed = force_closed(&contacts, &Point3::origin(), &convention).unwrap();
+        let closed = force_closed(&model(&contacts, &Point3::origin(), &convention)).unwrap();
         prop_assert_eq!(closed, found.closed);
     }
 
@@ -177,8 +167,8 @@ proptest! {
         let a = Grasp::new(contacts, Point3::origin()).unwrap();
         let b = Grasp::new(moved, Point3::origin()).unwrap();
         let convention = round(0.6, 1e-6);
-        let from = setup(&a.contacts, &a.centre, &convention);
-        let to = setup(&b.contacts, &b.centre, &convention);
+        let from = model(&a.contacts, &a.centre, &convention);
+        let to = model(&b.contacts, &b.centre, &convention);
         let constant = lipschitz_constant(&from).unwrap().unwrap();
         let bound = constant * distance(&a, &b).unwrap();
         let mut workspace = Workspace::new();
@@ -201,11 +191,11 @@ proptest! {
             quality(contacts, convention).value(convention)
         };
         // Torque over the size of the grasp: the size does not matter.
-        let graspit = Convention::named("graspit").unwrap();
+        let graspit = Convention::graspit();
         let difference = value(&contacts, &graspit) - value(&grown, &graspit);
         prop_assert!(difference.abs() <= 1e-12);
         // A fixed torque length grows with the object.
-        let paper = Convention::named("paper").unwrap();
+        let paper = Convention::paper();
         let longer = Convention {
             torque_length: TorqueLength::Metres(0.07),
             ..paper.clone()
@@ -224,26 +214,10 @@ proptest! {
     }
 
     #[test]
-    fn batches_are_the_grasps_one_by_one(
-        list in prop::collection::vec(prop_oneof![ring(3..5, 1.0), strewn(3..5)], 0..6),
-        polygon in any::<bool>(),
-    ) {
-        let convention = if polygon { unit(0.8, Edges::Polygon(8)) } else { round(0.8, 1e-3) };
-        let grasps: Vec<Grasp> = list
-            .iter()
-            .map(|contacts| Grasp::new(contacts.clone(), Point3::origin()).unwrap())
-            .collect();
-        let mut out = vec![quality(&ring_of_three(), &convention)];
-        epsilon_batch(&grasps, &convention, &mut Workspace::new(), &mut out).unwrap();
-        let alone: Vec<Epsilon> = list.iter().map(|c| quality(c, &convention)).collect();
-        prop_assert_eq!(out, alone);
-    }
-
-    #[test]
     fn near_facets_of_round_cones_support_them(contacts in ring(3..4, 1.0)) {
         let convention = round(0.9, 1e-2);
         let centre = Point3::origin();
-        let grasp = setup(&contacts, &centre, &convention);
+        let grasp = model(&contacts, &centre, &convention);
         let mut facets: Vec<ActiveFacet> = Vec::new();
         let mut workspace = Workspace::new();
         near_active_facets(&grasp, 0.02, &mut workspace, &mut facets).unwrap();
@@ -281,9 +255,9 @@ proptest! {
             round(0.8, 1e-3)
         };
         let centre = Point3::origin();
-        let setup = setup(&contacts, &centre, &convention);
-        let sum = epsilon_linf(&setup, &mut Workspace::new()).unwrap();
-        let union = epsilon_of(&setup, &mut Workspace::new()).unwrap();
+        let model = model(&contacts, &centre, &convention);
+        let sum = epsilon_linf(&model, &mut Workspace::new()).unwrap();
+        let union = epsilon(&model, &mut Workspace::new()).unwrap();
         prop_assert!(sum.upper >= union.lower - 1e-12);
         prop_assert!(sum.lower <= 3.0 * union.upper + 1e-12);
     }
@@ -312,24 +286,14 @@ fn ring_of_three() -> Vec<Contact> {
 }
 
 #[test]
-fn the_symmetric_grasp_of_a_batch_has_its_known_quality() {
+fn the_symmetric_grasp_has_its_known_quality() {
     // Three contacts on the unit circle, pyramids that begin along the axis of the circle.
-    let mut grasps = vec![Grasp::new(ring_of_three(), Point3::origin()).unwrap(); 2];
-    let mut workspace = Workspace::new();
-    let mut out = Vec::new();
     let convention = Convention {
         tangent: grasp::TangentRule::Projected(Vector3::z()),
         ..unit(1.0, Edges::Polygon(10))
     };
-    epsilon_batch(&grasps, &convention, &mut workspace, &mut out).unwrap();
-    assert_eq!(out.len(), 2);
-    for found in &out {
-        assert!((found.quality - 0.558403).abs() <= 1e-6);
-    }
-    // A bad grasp is named; what came before it is there.
-    grasps[1].contacts.truncate(1);
-    let error = epsilon_batch(&grasps, &convention, &mut workspace, &mut out).unwrap_err();
-    assert_eq!((error.index, out.len()), (1, 1));
+    let found = quality(&ring_of_three(), &convention);
+    assert!((found.quality - 0.558403).abs() <= 1e-6);
 }
 
 #[test]
@@ -382,17 +346,17 @@ fn soft_fingers_close_with_two_contacts() {
     for edges in [Edges::Polygon(8), Edges::Round { tolerance: 1e-4 }] {
         let convention = unit(0.5, edges);
         let mut workspace = Workspace::new();
-        let mut closed = |fingers: &[Finger]| {
-            let setup = Setup {
+        let mut closed = |contact_models: &[ContactModel]| {
+            let model = GraspModel {
                 contacts: &contacts,
                 centre: &centre,
                 convention: &convention,
-                fingers,
+                contact_models,
             };
-            epsilon_of(&setup, &mut workspace).unwrap().closed
+            epsilon(&model, &mut workspace).unwrap().closed
         };
-        let hard = Finger::Hard { friction: 0.5 };
-        let soft = Finger::Soft {
+        let hard = ContactModel::Point { friction: 0.5 };
+        let soft = ContactModel::Soft {
             friction: 0.5,
             torsion: 0.1,
         };
@@ -400,7 +364,7 @@ fn soft_fingers_close_with_two_contacts() {
         assert!(!closed(&[hard, hard]));
         assert!(closed(&[soft, soft]));
         assert!(closed(&[hard, soft]));
-        assert!(!closed(&[Finger::Frictionless, soft]));
+        assert!(!closed(&[ContactModel::Frictionless, soft]));
     }
 }
 
@@ -408,7 +372,7 @@ fn soft_fingers_close_with_two_contacts() {
 fn seven_frictionless_contacts_can_close() {
     let mut rng = generator(12);
     let convention = unit(0.5, Edges::Polygon(8));
-    let fingers = [Finger::Frictionless; 12];
+    let contact_models = [ContactModel::Frictionless; 12];
     let mut closed = 0;
     for _ in 0..200 {
         let contacts: Vec<Contact> = (0..12)
@@ -417,13 +381,13 @@ fn seven_frictionless_contacts_can_close() {
                 inward_normal: on_sphere(&mut rng),
             })
             .collect();
-        let setup = Setup {
+        let model = GraspModel {
             contacts: &contacts,
             centre: &Point3::origin(),
             convention: &convention,
-            fingers: &fingers,
+            contact_models: &contact_models,
         };
-        closed += u32::from(epsilon_of(&setup, &mut Workspace::new()).unwrap().closed);
+        closed += u32::from(epsilon(&model, &mut Workspace::new()).unwrap().closed);
     }
     assert!(closed > 20 && closed < 180, "{closed}");
 }

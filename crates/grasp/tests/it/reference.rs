@@ -4,7 +4,7 @@
 
 use grasp::hull::ConvexHull;
 use grasp::{
-    Contact, Convention, EdgeNorm, Edges, Setup, TorqueLength, Workspace, Wrench, epsilon,
+    Contact, Convention, EdgeNorm, Edges, GraspModel, TorqueLength, Workspace, Wrench, epsilon,
     epsilon_linf, epsilon_of_wrenches, wrenches_force_closed, wrenches_with_tangents,
 };
 use nalgebra::{Point3, Unit, UnitVector3, Vector3};
@@ -62,7 +62,7 @@ fn parse_row(line: &str) -> Row {
             friction: number(4),
             edges: Edges::Polygon(field[5].parse().unwrap()),
             torque_length: TorqueLength::Metres(number(7)),
-            ..Convention::named("unit").unwrap()
+            ..Convention::unit()
         },
         q_l1: number(8),
         vol_l1: number(9),
@@ -72,16 +72,14 @@ fn parse_row(line: &str) -> Row {
 
 impl Row {
     fn wrenches(&self) -> Vec<Wrench> {
-        wrenches_with_tangents(
-            &self.contacts,
-            &self.tangents,
-            &self.centre,
-            &self.convention,
-        )
-        .unwrap()
+        wrenches_with_tangents(&self.model(), &self.tangents).unwrap()
     }
 
-    /// All sums of one edge or nothing a contact.
+    fn model(&self) -> GraspModel<'_> {
+        GraspModel::new(&self.contacts, &self.centre, &self.convention)
+    }
+
+    /// All sums of one edge or nothing per contact.
     fn sums(&self) -> Vec<Wrench> {
         let each = self.wrenches().len() / self.contacts.len();
         let mut sums = vec![Wrench::zeros()];
@@ -115,7 +113,7 @@ fn tangent_rule_of_every_generic_reference_row() {
     let mut workspace = Workspace::new();
     // The last nine rows state a tangent of their own.
     for row in &rows[..400] {
-        let found = epsilon(&row.contacts, &row.centre, &row.convention, &mut workspace).unwrap();
+        let found = epsilon(&row.model(), &mut workspace).unwrap();
         assert!((found.quality - row.q_l1).abs() <= 1e-9);
     }
 }
@@ -145,13 +143,7 @@ fn sums_of_every_reference_row_that_has_them() {
     let mut seen = 0;
     for (index, row) in rows.iter().enumerate() {
         let Some(expected) = row.q_linf else { continue };
-        let setup = Setup {
-            contacts: &row.contacts,
-            centre: &row.centre,
-            convention: &row.convention,
-            fingers: &[],
-        };
-        let by_support = epsilon_linf(&setup, &mut workspace).unwrap();
+        let by_support = epsilon_linf(&row.model(), &mut workspace).unwrap();
         let error = (by_support.quality - expected).abs();
         assert!(error <= 1e-9, "row {index}: {by_support:?} {expected}");
         let found = epsilon_of_wrenches(&row.sums(), &mut workspace)
@@ -198,11 +190,12 @@ fn check_values_of_three_contacts_on_the_unit_circle() {
             friction,
             edges: Edges::Polygon(edges),
             edge_norm,
-            ..Convention::named("unit").unwrap()
+            ..Convention::unit()
         };
         let tangents = [Vector3::z_axis(); 3];
-        let list =
-            wrenches_with_tangents(&contacts, &tangents, &Point3::origin(), &convention).unwrap();
+        let centre = Point3::origin();
+        let model = GraspModel::new(&contacts, &centre, &convention);
+        let list = wrenches_with_tangents(&model, &tangents).unwrap();
         let found = epsilon_of_wrenches(&list, &mut Workspace::new())
             .unwrap()
             .quality;

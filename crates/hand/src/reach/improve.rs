@@ -5,7 +5,7 @@
 //! the quality is climbed among the contacts that the hand makes: every trial asks for contacts a
 //! little aside, moves the hand after them, closes it by the rules and measures what it holds.
 
-use grasp::{Contact, Convention, Grasp, QualityError, epsilon_quality};
+use grasp::{Contact, Convention, GraspModel, QualityError, Workspace, epsilon};
 use nalgebra::{DVector, Point3};
 use rand::{Rng, RngExt};
 use shape::Surface;
@@ -60,11 +60,8 @@ impl Reacher<'_> {
         rng: &mut R,
     ) -> Result<Improvement, QualityError> {
         let measure = |contacts: &[Contact]| {
-            let grasp = Grasp {
-                contacts: contacts.to_vec(),
-                centre: params.centre,
-            };
-            epsilon_quality(&grasp, &params.convention)
+            let model = GraspModel::new(contacts, &params.centre, &params.convention);
+            epsilon(&model, &mut Workspace::new()).map(|found| found.value(&params.convention))
         };
         let start_quality = measure(&near.contacts)?;
         let targets: Vec<_> = wanted

@@ -55,6 +55,6 @@ pub(crate) fn unit(friction: f64, edges: Edges) -> Convention {
     Convention {
         friction,
         edges,
-        ..Convention::named("unit").unwrap()
+        ..Convention::unit()
     }
 }

@@ -1,6 +1,5 @@
 //! Convex hulls of points in R⁶, and nothing else.
 
-mod follow;
 mod full;
 pub(crate) mod min_norm;
 pub(crate) mod plane;

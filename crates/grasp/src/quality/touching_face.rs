@@ -5,8 +5,8 @@
 //! u is orthogonal to its axes, with its whole flat ellipsoid: then p_i = base + Σ m_k/λ_i axis_k with
 //! unknown m and the conditions axis_k·u = 0. Minima of Q favour these kinks.
 
-use super::margin::{ActiveFacet, Carrier};
-use crate::finger::Cone;
+use super::facet::{ActiveFacet, Carrier};
+use crate::cone::Cone;
 use crate::hull::plane::{V6, add_scaled, dot, norm, scale};
 use nalgebra::{SMatrix, SVector};
 

@@ -1,0 +1,116 @@
+//! The wrenches of one contact as an ellipsoid, and their support function.
+
+use crate::contact::Contact;
+use crate::grasp_model::GraspModel;
+use crate::hull::plane::{V6, add_scaled, dot, norm, scale};
+use crate::hull::support::Support;
+use nalgebra::Vector3;
+
+/// The wrenches of one contact at unit normal force: the ellipsoid base + Σ a_k axis_k, |a| ≤ 1,
+/// with two axes of friction and one of torsion (zero where there is none).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cone {
+    pub(crate) contact: u32,
+    pub(crate) base: V6,
+    pub(crate) axes: [V6; 3],
+}
+
+impl Cone {
+    pub(crate) fn new(model: &GraspModel<'_>, contact: usize, length: f64) -> Self {
+        let Contact {
+            position,
+            inward_normal,
+        } = &model.contacts[contact];
+        let (friction, torsion) = model.contact_model(contact).limits();
+        let unit = model.edge_scale(contact);
+        let arm = position - model.centre;
+        let of_force = |f: Vector3<f64>| {
+            let t = arm.cross(&f) / length;
+            [f.x, f.y, f.z, t.x, t.y, t.z]
+        };
+        let n = inward_normal.into_inner() * unit;
+        let t = model.convention.tangent.tangent(inward_normal).into_inner();
+        let b = inward_normal.cross(&t);
+        let twist = n * (torsion / length);
+        Cone {
+            contact: contact as u32,
+            base: of_force(n),
+            axes: [
+                of_force(t * (unit * friction)),
+                of_force(b * (unit * friction)),
+                [0.0, 0.0, 0.0, twist.x, twist.y, twist.z],
+            ],
+        }
+    }
+
+    /// The farthest point of the ellipsoid along `direction`, and its height.
+    #[inline]
+    pub(crate) fn farthest(&self, direction: &V6) -> (V6, f64) {
+        let slopes = self.axes.map(|axis| dot(&axis, direction));
+        let length = (slopes[0] * slopes[0] + slopes[1] * slopes[1] + slopes[2] * slopes[2]).sqrt();
+        let height = dot(&self.base, direction) + length;
+        if length == 0.0 {
+            return (self.base, height);
+        }
+        let mut point = self.base;
+        for (axis, slope) in self.axes.iter().zip(slopes) {
+            point = add_scaled(&point, slope / length, axis);
+        }
+        (point, height)
+    }
+
+    /// The height of the farthest point alone.
+    #[inline]
+    fn height(&self, direction: &V6) -> f64 {
+        let slopes = self.axes.map(|axis| dot(&axis, direction));
+        let square = slopes[0] * slopes[0] + slopes[1] * slopes[1] + slopes[2] * slopes[2];
+        dot(&self.base, direction) + square.sqrt()
+    }
+
+    /// No point of the ellipsoid is longer.
+    pub(crate) fn reach(&self) -> f64 {
+        let square: f64 = self.axes.iter().map(|a| dot(a, a)).sum();
+        norm(&self.base) + square.sqrt()
+    }
+
+    /// The corners of the inscribed polytope: an edge for each pair (cos, sin) of `circle`, and the
+    /// two poles of torsion.
+    pub(crate) fn corners<'a>(&'a self, circle: &'a [(f64, f64)]) -> impl Iterator<Item = V6> + 'a {
+        let [t, b, twist] = &self.axes;
+        let no_friction = dot(t, t) == 0.0;
+        let edges = circle
+            .iter()
+            .take(if no_friction { 1 } else { circle.len() })
+            .map(move |&(cos, sin)| add_scaled(&add_scaled(&self.base, cos, t), sin, b));
+        let poles = [1.0, -1.0]
+            .into_iter()
+            .take(if dot(twist, twist) == 0.0 { 0 } else { 2 })
+            .map(move |sign| add_scaled(&self.base, sign, twist));
+        edges.chain(poles)
+    }
+}
+
+/// The hull of several round cones.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RoundSource<'a>(pub(crate) &'a [Cone]);
+
+impl Support for RoundSource<'_> {
+    fn support(&mut self, direction: &V6) -> (V6, u32) {
+        let mut best = (0, f64::NEG_INFINITY);
+        for (i, cone) in self.0.iter().enumerate() {
+            let height = cone.height(direction);
+            if height > best.1 {
+                best = (i, height);
+            }
+        }
+        let cone = &self.0[best.0];
+        (cone.farthest(direction).0, cone.contact)
+    }
+}
+
+/// A direction in which points of round cones lie.
+pub(crate) fn toward(cones: &[Cone]) -> V6 {
+    cones
+        .iter()
+        .fold([0.0; 6], |s, c| add_scaled(&s, 1.0, &scale(&c.base, 1.0)))
+}
