@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
+use moduli::records::convention_record;
 use rayon::prelude::*;
 use record::grasps::ConventionRecord;
 use serde::Serialize;
@@ -93,7 +94,7 @@ impl Movement<'_> {
             version: TRACE_VERSION,
             object: &self.object.record.name,
             scheme: self.scheme,
-            convention: ConventionRecord::from(self.objective.convention()),
+            convention: convention_record(self.objective.convention()),
             grasps: moved
                 .iter()
                 .map(|m| GraspTrace {

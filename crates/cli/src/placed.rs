@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use moduli::records::{convention_record, stored_shape};
 use nalgebra::{Point3, Vector3};
-use record::grasps::{ConventionRecord, GRASPS_VERSION, ObjectRecord, SourceRecord};
+use record::grasps::{AssessmentRecord, GRASPS_VERSION, ObjectRecord, SourceRecord};
 use record::{GraspRecord, GraspsFile, ShapeRecord};
 use serde::Serialize;
 use shape::{RadialField, Surface};
@@ -27,7 +28,7 @@ pub(crate) struct Object {
 impl Object {
     pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
         let record = input::shape_record(path)?;
-        let shape = record.shape().map_err(|e| Failure::input(path, e))?;
+        let shape = stored_shape(&record).map_err(|e| Failure::input(path, e))?;
         Ok(Self {
             surface: RadialField::new(shape),
             record,
@@ -103,8 +104,14 @@ impl Object {
                     .iter()
                     .map(|c| c.inward_normal.into_inner().into())
                     .collect(),
+                directions: grasp
+                    .directions
+                    .iter()
+                    .map(|p| p.into_inner().into())
+                    .collect(),
                 source: grasp.source.clone(),
                 hand: None,
+                assessment: AssessmentRecord::default(),
             }
         };
         GraspsFile {
@@ -116,8 +123,9 @@ impl Object {
                 r_max_certified_m: high,
                 centre_of_mass_m: (shape.centre_of_mass() + centre).into(),
                 volume_m3: shape.mass_properties().volume,
+                ..ObjectRecord::default()
             },
-            convention: ConventionRecord::from(objective.convention()),
+            convention: convention_record(objective.convention()),
             grasps: order.iter().enumerate().map(record).collect(),
         }
     }

@@ -12,6 +12,7 @@ pub(crate) mod transfer;
 use grasp::{Contact, Convention};
 use nalgebra::{Isometry3, Point3};
 use space::Objective;
+use sph::Direction;
 
 pub(crate) use fitted::Fitted;
 
@@ -45,6 +46,8 @@ impl<'a> Target<'a> {
 /// A grasp on the target, centred frame, not yet ranked.
 #[derive(Clone, Debug)]
 pub(crate) struct Candidate {
+    /// The point of (S²)^m whose image the contacts are.
+    pub(crate) directions: Vec<Direction>,
     pub(crate) contacts: Vec<Contact>,
     pub(crate) quality: f64,
     pub(crate) source: Source,

@@ -2,8 +2,9 @@
 
 use grasp::{Contact, Convention, Grasp};
 use hand::HandGrasp;
+use moduli::records::{library_grasp, shape_record};
 use nalgebra::Point3;
-use record::{LibraryEntry, LibraryGrasp, LibraryRecord, ShapeRecord};
+use record::{LibraryEntry, LibraryRecord};
 use shape::FitSettings;
 
 use crate::error::ExperimentError;
@@ -90,11 +91,8 @@ fn entry(fitted: &FittedObject, ranked: &[HandGrasp], settings: &LibrarySettings
     LibraryEntry {
         id: fitted.id().to_owned(),
         name: name.clone(),
-        shape: ShapeRecord::of_fit(name, &fitted.fit, points),
-        grasps: spread
-            .into_iter()
-            .map(LibraryGrasp::of_hand_grasp)
-            .collect(),
+        shape: shape_record(name, &fitted.fit, points),
+        grasps: spread.into_iter().map(library_grasp).collect(),
     }
 }
 

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use record::grasps::ConventionRecord;
+use moduli::records::convention_record;
 use report::{Page, Section};
 use serde_json::{Value, json};
 
@@ -80,7 +80,7 @@ pub fn execute(
         "seed": args.seed,
         "threads": pool.current_num_threads(),
         "objects": findings.objects,
-        "convention": ConventionRecord::from(&args.convention),
+        "convention": convention_record(&args.convention),
         "paper": findings.paper,
         "ours": findings.ours,
         "seconds": seconds,

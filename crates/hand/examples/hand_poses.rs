@@ -17,6 +17,7 @@ use rand_chacha::rand_core::SeedableRng;
 use record::LibraryRecord;
 use shape::{FitSettings, PointCloud, RadialShape};
 use space::Objective;
+use sph::Coefficients;
 
 const LIBRARY: &[u8] = fixtures::LIBRARY;
 const POSES: usize = 1400;
@@ -31,7 +32,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     if scans.is_empty() {
         for entry in &LibraryRecord::from_bytes(LIBRARY)?.entries {
             let name = format!("{} {}", entry.id, entry.name);
-            row(&name, &entry.shape.shape()?, &hand, &convention)?;
+            let beta = Coefficients::new(entry.shape.coefficients.clone())?;
+            row(&name, &RadialShape::new(beta)?, &hand, &convention)?;
         }
     }
     for path in &scans {

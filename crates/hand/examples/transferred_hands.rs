@@ -22,10 +22,11 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rayon::prelude::*;
 use record::LibraryRecord;
-use shape::RadialField;
+use shape::{RadialField, RadialShape};
 use space::Continuation;
 use space::point::contacts_on;
 use space::transfer::{Job, Transfer, all_pairs};
+use sph::Coefficients;
 
 type Failure = Box<dyn Error + Send + Sync>;
 
@@ -104,7 +105,8 @@ impl Study {
             .entries
             .par_iter()
             .map(|entry| {
-                let shape = entry.shape.shape()?;
+                let beta = Coefficients::new(entry.shape.coefficients.clone())?;
+                let shape = RadialShape::new(beta)?;
                 let mut rng = ChaCha8Rng::seed_from_u64(SEED);
                 let mut grasps = synthesize(&shape, &hand, &params, &mut rng)?.grasps;
                 grasps.truncate(BEST);

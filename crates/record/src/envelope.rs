@@ -1,4 +1,4 @@
-//! The header of binary records, and the only use of bincode.
+//! The header of binary records. This module alone uses bincode.
 //!
 //! Layout, little endian: magic `MODULI\r\n` (8 bytes), kind (u16), version (u16), length of the
 //! body (u64), FNV-1a checksum of the body (u64), body.
@@ -9,10 +9,10 @@ use serde::de::DeserializeOwned;
 
 const MAGIC: [u8; 8] = *b"MODULI\r\n";
 const HEADER: usize = 28;
-/// No body is larger: a library of a thousand shapes of degree 100 has 80 MB.
+/// Largest body, bytes. A library of a thousand shapes of degree 100 has 80 MB.
 const MAX_BODY: u64 = 1 << 28;
 
-/// What a record holds.
+/// Kind of a binary record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A [`crate::ShapeRecord`].
@@ -29,7 +29,7 @@ impl Kind {
         }
     }
 
-    /// Version that is written, and the only one that is read.
+    /// The version that is written, and the only one that is read.
     fn version(self) -> u16 {
         match self {
             Kind::Shape | Kind::Library => 1,
@@ -50,31 +50,31 @@ impl Kind {
     }
 }
 
-/// Why bytes are not the record that was wanted.
+/// Why bytes are not the expected record.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EnvelopeError {
-    /// Not one of our files.
+    /// The bytes do not begin with the mark of a moduli record.
     #[error("not a moduli record: it does not begin with the mark MODULI")]
     Magic,
-    /// Another kind of record.
+    /// The record is of another kind.
     #[error("this record holds a {found}, expected a {expected}")]
     Kind {
-        /// What it holds.
+        /// The kind found.
         found: String,
-        /// What was wanted.
+        /// The kind expected.
         expected: &'static str,
     },
-    /// Written by another version of the format.
+    /// The record has another version of its format.
     #[error("{kind} record of format version {found}; this program reads version {known}")]
     Version {
-        /// Kind of record.
+        /// The kind.
         kind: &'static str,
         /// Version found.
         found: u16,
-        /// Version read.
+        /// The version that is read.
         known: u16,
     },
-    /// The file is shorter or longer than it says.
+    /// The body is shorter or longer than the header says.
     #[error("the record says {expected} bytes of content, but {found} follow the header")]
     Length {
         /// Bytes announced.
@@ -82,18 +82,21 @@ pub enum EnvelopeError {
         /// Bytes present.
         found: u64,
     },
-    /// The content was changed.
+    /// The body does not have the checksum of the header.
     #[error("the record is damaged: its checksum does not match its content")]
     Checksum,
-    /// The content does not decode.
+    /// The body cannot be decoded.
     #[error("the record does not decode: {reason}")]
     Body {
-        /// What the decoder found.
+        /// The message of the decoder.
         reason: String,
     },
 }
 
-/// Wraps a value. Errors only when the body cannot be encoded or is beyond 256 MiB.
+/// Encodes a value behind a header.
+///
+/// # Errors
+/// The value cannot be encoded, or its body is larger than 256 MiB.
 pub fn encode<T: Serialize>(kind: Kind, value: &T) -> Result<Vec<u8>, EnvelopeError> {
     let body = bincode::serde::encode_to_vec(value, config::standard().with_fixed_int_encoding())
         .map_err(|e| EnvelopeError::Body {
@@ -114,7 +117,7 @@ pub fn encode<T: Serialize>(kind: Kind, value: &T) -> Result<Vec<u8>, EnvelopeEr
     Ok(out)
 }
 
-/// Which kind of record bytes begin as, if any.
+/// The kind of record whose header the bytes begin with; `None` for anything else.
 pub fn kind_of(bytes: &[u8]) -> Option<Kind> {
     if bytes.len() < HEADER || bytes[..8] != MAGIC {
         return None;
@@ -122,7 +125,10 @@ pub fn kind_of(bytes: &[u8]) -> Option<Kind> {
     Kind::from_code(u16::from_le_bytes([bytes[8], bytes[9]]))
 }
 
-/// Unwraps a value after checking mark, kind, version, length and checksum.
+/// Decodes a value after checking mark, kind, version, length and checksum.
+///
+/// # Errors
+/// One of these checks fails, or the body does not decode to the type or has bytes left over.
 pub fn decode<T: DeserializeOwned>(kind: Kind, bytes: &[u8]) -> Result<T, EnvelopeError> {
     let body = checked_body(kind, bytes)?;
     let config = config::standard()
@@ -178,59 +184,9 @@ fn checked_body(kind: Kind, bytes: &[u8]) -> Result<&[u8], EnvelopeError> {
     Ok(body)
 }
 
-/// 64-bit FNV-1a: catches accidents, not attackers.
+/// The 64-bit FNV-1a hash. It detects accidents, not deliberate changes.
 pub fn checksum(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn wrapped() -> Vec<u8> {
-        encode(Kind::Shape, &vec![1.5_f64, -2.0]).unwrap()
-    }
-
-    #[test]
-    fn comes_back() {
-        assert_eq!(
-            decode::<Vec<f64>>(Kind::Shape, &wrapped()),
-            Ok(vec![1.5, -2.0])
-        );
-        assert_eq!(kind_of(&wrapped()), Some(Kind::Shape));
-        assert_eq!(kind_of(b"ply\nformat ascii 1.0\n and so on"), None);
-    }
-
-    #[test]
-    fn every_damage_is_named() {
-        let good = wrapped();
-        let read = |bytes: &[u8]| decode::<Vec<f64>>(Kind::Shape, bytes);
-        assert_eq!(read(b"ply"), Err(EnvelopeError::Magic));
-        assert!(matches!(
-            decode::<Vec<f64>>(Kind::Library, &good),
-            Err(EnvelopeError::Kind {
-                expected: "library",
-                ..
-            })
-        ));
-        let mut newer = good.clone();
-        newer[10] = 9;
-        assert!(matches!(
-            read(&newer),
-            Err(EnvelopeError::Version { found: 9, .. })
-        ));
-        assert!(matches!(
-            read(&good[..good.len() - 1]),
-            Err(EnvelopeError::Length { .. })
-        ));
-        let mut flipped = good.clone();
-        *flipped.last_mut().unwrap() ^= 1;
-        assert_eq!(read(&flipped), Err(EnvelopeError::Checksum));
-        assert!(matches!(
-            decode::<Vec<Vec<u64>>>(Kind::Shape, &good),
-            Err(EnvelopeError::Body { .. })
-        ));
-    }
 }

@@ -1,33 +1,63 @@
 //! `grasps.json`: ranked grasps on one object, in the frame of the user's cloud.
+//!
+//! Version 1 is written. Versions 1 and 2 are read: the keys of version 2 are optional fields here,
+//! so that a reader sees one type. Keys that are not known are ignored.
+
+mod contact;
+mod convention;
+mod hand;
+mod source;
 
 use std::collections::BTreeMap;
 
-use grasp::{CentreRule, Convention, EdgeNorm, Edges, TangentRule, TorqueLength};
 use serde::{Deserialize, Serialize};
 
-/// Version of the layout of `grasps.json`; additions with a default leave it as it is.
+pub use contact::ContactRecord;
+pub use convention::{CentreRecord, ConventionRecord, EdgeNormRecord, EdgesRecord, TangentRecord};
+pub use hand::{ExecutionRecord, HandRecord, JointRecord, JointUnit, PoseRecord};
+pub use source::SourceRecord;
+
+/// Version of the layout of `grasps.json` that is written. Keys with a default may be added without
+/// a new version.
 pub const GRASPS_VERSION: u32 = 1;
 
-/// Why a text is no `grasps.json`.
+/// The newest version that is read.
+const NEWEST_VERSION: u32 = 2;
+
+/// Why a text is not a `grasps.json`.
 #[derive(Debug, thiserror::Error)]
 pub enum GraspsFileError {
-    /// Not JSON, or not with these keys.
+    /// The text is not JSON, or a key is missing or of the wrong type.
     #[error("not a grasps.json: {0}")]
     Json(#[from] serde_json::Error),
-    /// Written by another version of the format.
-    #[error("a grasps.json of version {found}; this program reads version {GRASPS_VERSION}")]
+    /// The file has a version that is not read.
+    #[error("a grasps.json of version {found}; versions 1 to {NEWEST_VERSION} are read")]
     Version {
         /// Version found.
-        found: u32,
+        found: u64,
+    },
+    /// The lists of a grasp have different lengths.
+    #[error(
+        "grasp {grasp} has {contacts} entries in `contacts_m` and {other} in `{key}`; expected the same number"
+    )]
+    Lengths {
+        /// Index of the grasp in the file, from 0.
+        grasp: usize,
+        /// Entries of `contacts_m`.
+        contacts: usize,
+        /// The list that differs.
+        key: &'static str,
+        /// Its entries.
+        other: usize,
     },
 }
 
-/// The whole file. Lengths in metres, angles in radians, everything in the frame of the cloud.
+/// A whole `grasps.json`: lengths in metres, angles in radians, in the frame of the cloud.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GraspsFile {
-    /// [`GRASPS_VERSION`].
+    /// Version of the layout; [`GRASPS_VERSION`] when written.
     pub version: u32,
-    /// The object.
+    /// The object that is grasped.
     pub object: ObjectRecord,
     /// How quality was measured.
     pub convention: ConventionRecord,
@@ -36,225 +66,160 @@ pub struct GraspsFile {
 }
 
 /// The object that is grasped.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ObjectRecord {
     /// Name of the object or of its cloud.
     pub name: String,
-    /// Mean of the cloud.
+    /// Mean of the cloud: the origin of the centred frame.
     pub centre_m: [f64; 3],
-    /// No point of the surface is nearer to the centre.
+    /// Proved lower bound of the distance of the surface from the centre.
     pub r_min_certified_m: f64,
-    /// No point of the surface is farther from the centre.
+    /// Proved upper bound of the distance of the surface from the centre.
     pub r_max_certified_m: f64,
     /// Centroid of the enclosed solid.
     pub centre_of_mass_m: [f64; 3],
     /// Volume of the enclosed solid, cubic metres.
     pub volume_m3: f64,
+    /// How the surface is represented; version 2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model: Option<SurfaceModel>,
+    /// How well the surface fits its cloud, by name (`rms_m`, `surface_rms_m`, …); version 2.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub residuals: BTreeMap<String, f64>,
+    /// The plane on which the object stands; version 2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub support: Option<SupportRecord>,
+    /// What the user should know about the object, one sentence each; version 2.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
 }
 
-/// A convention of quality, spelled out.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ConventionRecord {
-    /// Its name.
-    pub name: String,
-    /// `unit_normal_component` or `unit_length`.
-    pub edge_norm: String,
-    /// The length that divides torques, metres; absent where the convention takes the largest
-    /// distance of a contact from the centre.
-    pub torque_length_m: Option<f64>,
-    /// `cloud_mean`, `centre_of_mass`, `object_origin` or `given`.
-    pub centre: String,
-    /// Friction coefficient μ.
-    pub friction: f64,
-    /// Edges of the friction pyramid; absent for the round cone.
-    pub edges: Option<usize>,
-    /// What is reported for grasps that are not force-closed.
-    pub not_closed: f64,
-    /// Where the first edge of each pyramid points, as a projection onto the tangent plane:
-    /// `least_aligned`, of the coordinate axis least aligned with the normal, or `projected`, of
-    /// `tangent_axis`.
-    #[serde(default = "least_aligned")]
-    pub tangent: String,
-    /// The projected vector, for `projected`.
-    #[serde(default)]
-    pub tangent_axis: Option<[f64; 3]>,
+/// How a surface is represented.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SurfaceModel {
+    /// A radius for every direction: a member of M^rad.
+    Radial,
+    /// A point for every direction: a member of M^sph.
+    Spherical,
 }
 
-/// The rule of files from before the rule was written down.
-fn least_aligned() -> String {
-    "least_aligned".to_owned()
+/// The plane {x : normal · x = offset} on which an object stands, in the frame of the cloud.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SupportRecord {
+    /// Unit normal, towards the object.
+    pub normal: [f64; 3],
+    /// Signed distance of the plane from the origin of the cloud's frame, metres.
+    pub offset_m: f64,
 }
 
 /// One grasp.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GraspRecord {
-    /// 1 for the best.
+    /// Rank, 1 for the best.
     pub rank: usize,
     /// Quality under the file's convention.
     pub quality: f64,
-    /// Contact points.
+    /// Positions of the contacts.
     pub contacts_m: Vec<[f64; 3]>,
     /// Unit normals at the contacts, into the object.
     pub inward_normals: Vec<[f64; 3]>,
+    /// Unit vectors of the contacts on the sphere of parameters: the point of (S²)^m. For a radial
+    /// surface they point from the object's `centre_m` to the contacts. Empty in older files.
+    #[serde(default)]
+    pub directions: Vec<[f64; 3]>,
     /// Where the grasp comes from.
     pub source: SourceRecord,
-    /// How a hand takes it; null where no hand has been fitted to the contacts.
+    /// The hand that takes the grasp; `null` where no hand has been fitted to the contacts.
     pub hand: Option<HandRecord>,
+    /// What version 2 adds.
+    #[serde(flatten)]
+    pub assessment: AssessmentRecord,
 }
 
-/// Where a grasp comes from.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SourceRecord {
-    /// `transfer` or `synthesis`.
-    pub kind: String,
-    /// The library object, for a transfer.
-    pub from: Option<String>,
-    /// Distance of the library object's shape, metres, for a transfer.
-    pub shape_distance_m: Option<f64>,
-    /// Quality of the grasp on the library object, for a transfer.
-    pub source_quality: Option<f64>,
+/// How far a grasp can be trusted (version 2).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct AssessmentRecord {
+    /// Proved lower bound of the quality.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lower: Option<f64>,
+    /// Proved upper bound of the quality.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper: Option<f64>,
+    /// Lower bound of the quality for all surfaces that agree with the evidence at the contacts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub robust_quality: Option<f64>,
+    /// Predicted probability, in [0, 1], that the grasp holds when it is executed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hold: Option<f64>,
+    /// The numbers from which `hold` was computed, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub hold_parts: BTreeMap<String, f64>,
+    /// The contacts with the evidence for them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contacts: Vec<ContactRecord>,
 }
 
-/// A hand at a grasp.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct HandRecord {
-    /// Name of the hand.
-    pub name: String,
-    /// The root link of the URDF, whose pose this is; empty in older files.
-    #[serde(default)]
-    pub palm_link: String,
-    /// Pose of the palm in the frame of the cloud.
-    pub object_from_palm: PoseRecord,
-    /// Driven joints by name, radians (metres for those that slide).
-    pub joints_rad: BTreeMap<String, f64>,
-    /// The same before the fingers closed; empty in older files.
-    #[serde(default)]
-    pub pregrasp_joints_rad: BTreeMap<String, f64>,
-    /// Largest distance from a contact that this hand makes to the grasp's own; 0 where the
-    /// contacts are the hand's.
-    pub contact_error_m: f64,
-}
-
-/// A rigid transform.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PoseRecord {
-    /// Translation.
-    pub translation_m: [f64; 3],
-    /// Rotation as a unit quaternion, x y z w.
-    pub quaternion_xyzw: [f64; 4],
-}
-
-impl From<&Convention> for ConventionRecord {
-    fn from(convention: &Convention) -> Self {
-        Self {
-            name: convention.name.clone(),
-            edge_norm: match convention.edge_norm {
-                EdgeNorm::UnitNormalComponent => "unit_normal_component",
-                EdgeNorm::UnitLength => "unit_length",
-            }
-            .to_owned(),
-            torque_length_m: match convention.torque_length {
-                TorqueLength::Metres(length) => Some(length),
-                TorqueLength::MaxContactDistance => None,
-            },
-            centre: match convention.centre {
-                CentreRule::CloudMean => "cloud_mean",
-                CentreRule::CentreOfMass => "centre_of_mass",
-                CentreRule::ObjectOrigin => "object_origin",
-                CentreRule::Given => "given",
-            }
-            .to_owned(),
-            friction: convention.friction,
-            edges: match convention.edges {
-                Edges::Polygon(count) => Some(count),
-                Edges::Round { .. } => None,
-            },
-            not_closed: convention.not_closed,
-            tangent: match convention.tangent {
-                TangentRule::LeastAligned => least_aligned(),
-                TangentRule::Projected(_) => "projected".to_owned(),
-            },
-            tangent_axis: match convention.tangent {
-                TangentRule::LeastAligned => None,
-                TangentRule::Projected(axis) => Some(axis.into()),
-            },
-        }
-    }
+/// The version of a file, read before its other keys.
+#[derive(Deserialize)]
+struct VersionOnly {
+    version: u64,
 }
 
 impl GraspsFile {
-    /// Reads the JSON text of a file of this version.
+    /// Reads the JSON text of a file.
+    ///
+    /// ```
+    /// let text = br#"{"version": 3}"#;
+    /// let error = record::GraspsFile::from_json(text).unwrap_err();
+    /// assert_eq!(
+    ///     error.to_string(),
+    ///     "a grasps.json of version 3; versions 1 to 2 are read",
+    /// );
+    /// ```
+    ///
+    /// # Errors
+    /// The text is not JSON, a key is missing or of the wrong type, the version is not read, or the
+    /// lists of a grasp have different lengths.
     pub fn from_json(text: &[u8]) -> Result<Self, GraspsFileError> {
-        let file: Self = serde_json::from_slice(text)?;
-        if file.version == GRASPS_VERSION {
-            Ok(file)
-        } else {
-            Err(GraspsFileError::Version {
-                found: file.version,
-            })
+        let found = serde_json::from_slice::<VersionOnly>(text)?.version;
+        if !(1..=u64::from(NEWEST_VERSION)).contains(&found) {
+            return Err(GraspsFileError::Version { found });
         }
+        let file: Self = serde_json::from_slice(text)?;
+        for (grasp, record) in file.grasps.iter().enumerate() {
+            record.check_lengths(grasp)?;
+        }
+        Ok(file)
     }
 
-    /// The JSON text, indented; a number that is not finite becomes `null`.
+    /// The JSON text, indented. A number that is not finite is written as `null`.
+    ///
+    /// # Errors
+    /// The JSON writer fails.
     pub fn to_json(&self) -> Result<Vec<u8>, serde_json::Error> {
         serde_json::to_vec_pretty(self)
     }
 }
 
-#[cfg(test)]
-pub(crate) mod tests {
-    use super::*;
-
-    pub(crate) fn file() -> GraspsFile {
-        let mut convention = Convention::named("frogger").unwrap();
-        convention.tangent = TangentRule::Projected([1.2, 2.3, 3.4].into());
-        GraspsFile {
-            version: GRASPS_VERSION,
-            object: ObjectRecord {
-                name: "ball".to_owned(),
-                centre_m: [0.1, 0.2, 0.3],
-                r_min_certified_m: 0.03,
-                r_max_certified_m: 0.04,
-                centre_of_mass_m: [0.1, 0.2, 0.3],
-                volume_m3: 1e-4,
-            },
-            convention: ConventionRecord::from(&convention),
-            grasps: Vec::new(),
+impl GraspRecord {
+    /// Contacts and normals are of one number; directions and evidence too, where they are given.
+    fn check_lengths(&self, grasp: usize) -> Result<(), GraspsFileError> {
+        let contacts = self.contacts_m.len();
+        let optional = [
+            ("directions", self.directions.len()),
+            ("contacts", self.assessment.contacts.len()),
+        ];
+        let given = optional.into_iter().filter(|(_, count)| *count > 0);
+        let mut lists = std::iter::once(("inward_normals", self.inward_normals.len())).chain(given);
+        match lists.find(|(_, count)| *count != contacts) {
+            Some((key, other)) => Err(GraspsFileError::Lengths {
+                grasp,
+                contacts,
+                key,
+                other,
+            }),
+            None => Ok(()),
         }
-    }
-
-    #[test]
-    fn comes_back_with_its_tangent_rule() {
-        let read = GraspsFile::from_json(&file().to_json().unwrap()).unwrap();
-        assert_eq!(read, file());
-        assert_eq!(read.convention.tangent, "projected");
-        assert_eq!(read.convention.tangent_axis, Some([1.2, 2.3, 3.4]));
-    }
-
-    #[test]
-    fn files_from_before_the_tangent_rule_are_read() {
-        let mut value = serde_json::to_value(file()).unwrap();
-        let convention = value["convention"].as_object_mut().unwrap();
-        convention.remove("tangent");
-        convention.remove("tangent_axis");
-        let read = GraspsFile::from_json(value.to_string().as_bytes()).unwrap();
-        assert_eq!(read.convention.tangent, "least_aligned");
-        assert_eq!(read.convention.tangent_axis, None);
-    }
-
-    #[test]
-    fn another_version_is_refused() {
-        let newer = GraspsFile {
-            version: 2,
-            ..file()
-        };
-        assert!(matches!(
-            GraspsFile::from_json(&newer.to_json().unwrap()),
-            Err(GraspsFileError::Version { found: 2 })
-        ));
-        assert!(matches!(
-            GraspsFile::from_json(b"{}"),
-            Err(GraspsFileError::Json(_))
-        ));
     }
 }

@@ -1,9 +1,29 @@
-//! What is written down: the only serialised types, each with a version.
+//! The file types of moduli: what is stored, each with a version.
 //!
-//! Binary records (shapes, the library) go through [`envelope`]: a header that names the kind and
-//! the version, a checksum, and a bincode body. `grasps.json` is [`grasps::GraspsFile`], and
-//! [`isaac`] writes its grasps as YAML. No type
-//! of a foreign crate appears in a stored type.
+//! - [`ShapeRecord`] and [`LibraryRecord`] are binary files. [`envelope`] puts a header in front of
+//!   them that names the kind and the version and carries a checksum of the body.
+//! - [`GraspsFile`] is `grasps.json`; [`isaac_grasps`] writes its grasps as YAML for Isaac Sim.
+//!
+//! This crate depends on no other crate of the project, so a program that only reads files needs
+//! nothing else. The types hold plain numbers and are not checked for their meaning: a stored
+//! radius function, for example, is proved positive again by the crate that turns it into a shape.
+//!
+//! A library is written and read back:
+//!
+//! ```
+//! use record::{LibraryRecord, ShapeRecord};
+//!
+//! let library = LibraryRecord {
+//!     seed: 1,
+//!     convention: "paper".to_owned(),
+//!     hand: "sdh".to_owned(),
+//!     entries: Vec::new(),
+//! };
+//! let bytes = library.to_bytes()?;
+//! assert_eq!(LibraryRecord::from_bytes(&bytes)?, library);
+//! assert!(ShapeRecord::from_bytes(&bytes).is_err());
+//! # Ok::<(), record::EnvelopeError>(())
+//! ```
 
 pub mod envelope;
 pub mod grasps;
@@ -15,4 +35,4 @@ pub use envelope::{EnvelopeError, Kind};
 pub use grasps::{GraspRecord, GraspsFile, GraspsFileError};
 pub use isaac::isaac_grasps;
 pub use library::{LibraryEntry, LibraryGrasp, LibraryRecord};
-pub use shape_record::{ShapeRecord, ShapeRecordError};
+pub use shape_record::ShapeRecord;

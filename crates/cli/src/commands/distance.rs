@@ -1,5 +1,6 @@
 //! `moduli distance`: how far shapes are from each other.
 
+use moduli::records::{stored_coefficients, stored_shape};
 use serde::Serialize;
 
 use crate::args::{Common, DistanceOptions};
@@ -18,14 +19,12 @@ pub(crate) fn run(options: &DistanceOptions, common: &Common) -> Result<(), Fail
     let mut shapes = Vec::new();
     for path in &options.shapes {
         let record = input::shape_record(path)?;
-        let beta = record.coefficients().map_err(|e| Failure::input(path, e))?;
-        shapes.push((record.name, beta));
+        let shape = stored_shape(&record).map_err(|e| Failure::input(path, e))?;
+        shapes.push((record.name, shape.coefficients().clone()));
     }
     if shapes.len() == 1 {
         for entry in &library::built_in()?.entries {
-            let beta = entry
-                .shape
-                .coefficients()
+            let beta = stored_coefficients(&entry.shape)
                 .map_err(|e| Failure::other(format!("{}: {e}", entry.id)))?;
             shapes.push((format!("{} {}", entry.id, entry.name), beta));
         }

@@ -1,5 +1,6 @@
 //! `moduli eval`: a shape at given directions.
 
+use moduli::records::stored_shape;
 use nalgebra::Vector3;
 use serde::Serialize;
 use shape::Surface;
@@ -17,8 +18,7 @@ struct EvalLine {
 }
 
 pub(crate) fn run(options: &EvalOptions, common: &Common) -> Result<(), Failure> {
-    let shape = input::shape_record(&options.shape)?
-        .shape()
+    let shape = stored_shape(&input::shape_record(&options.shape)?)
         .map_err(|e| Failure::input(&options.shape, e))?;
     let table = numpy::read(&options.directions, 3)?;
     let mut values = Vec::with_capacity(table.values.len() / 3 * 7);

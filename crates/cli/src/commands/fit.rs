@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use record::ShapeRecord;
+use moduli::records::shape_record;
 use serde::Serialize;
 
 use crate::args::{Common, FitOptions};
@@ -73,7 +73,7 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Fail
     let seconds = start.elapsed().as_secs_f64();
     let points = cloud.points().len();
     if let Some(target) = target(path, options) {
-        let bytes = ShapeRecord::of_fit(&input::stem(path), &fit, points)
+        let bytes = shape_record(&input::stem(path), &fit, points)
             .to_bytes()
             .map_err(|e| Failure::other(e.to_string()))?;
         output::write_file(&target, &bytes)?;

@@ -1,5 +1,6 @@
 //! `moduli info`: what a file holds.
 
+use moduli::records::{StoredShapeError, stored_shape};
 use record::{GraspsFile, GraspsFileError, Kind, LibraryRecord, ShapeRecord, envelope};
 
 use shape::io::{Geometry, Loaded};
@@ -22,7 +23,9 @@ pub(crate) fn run(options: &InfoOptions) -> Result<(), Failure> {
         }
         None => match GraspsFile::from_json(&bytes) {
             Ok(file) => grasps_lines(&file),
-            Err(e @ GraspsFileError::Version { .. }) => return Err(Failure::input(path, e)),
+            Err(e @ (GraspsFileError::Version { .. } | GraspsFileError::Lengths { .. })) => {
+                return Err(Failure::input(path, e));
+            }
             Err(GraspsFileError::Json(_)) => {
                 let loaded = input::load(path)?;
                 loaded_lines(&loaded)
@@ -33,8 +36,8 @@ pub(crate) fn run(options: &InfoOptions) -> Result<(), Failure> {
     Ok(())
 }
 
-fn shape_lines(record: &ShapeRecord) -> Result<Vec<String>, record::ShapeRecordError> {
-    let shape = record.shape()?;
+fn shape_lines(record: &ShapeRecord) -> Result<Vec<String>, StoredShapeError> {
+    let shape = stored_shape(record)?;
     let (low, high) = shape.radius_bounds();
     let mass = shape.mass_properties();
     Ok(vec![

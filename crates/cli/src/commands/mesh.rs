@@ -1,14 +1,14 @@
 //! `moduli mesh`: a shape as triangles, in the frame of its cloud.
 
+use moduli::records::stored_shape;
+
 use crate::args::MeshOptions;
 use crate::failure::Failure;
 use crate::{input, output};
 
 pub(crate) fn run(options: &MeshOptions) -> Result<(), Failure> {
     let record = input::shape_record(&options.shape)?;
-    let shape = record
-        .shape()
-        .map_err(|e| Failure::input(&options.shape, e))?;
+    let shape = stored_shape(&record).map_err(|e| Failure::input(&options.shape, e))?;
     let mut mesh = shape.mesh(options.rows, options.columns);
     for vertex in &mut mesh.vertices {
         *vertex += record.centre_in_cloud().coords;

@@ -62,7 +62,7 @@ fn one_pair(
     let start = Instant::now();
     let objective = Objective::new(&convention, &to.surface, &to.origin());
     let scheme = prepare(options, &transfer, &objective)?;
-    let source = source(&from, &to);
+    let origin = Origin::new(&from, &to);
     let movement = Movement {
         doing: "transferring",
         scheme: scheme_name(options),
@@ -71,7 +71,7 @@ fn one_pair(
         start,
     };
     movement.run(&grasps, &options.moved, common, |i, placed| {
-        carry(options, &scheme, &transfer, &to, placed, &source).map_err(|e| failed(path, i, &e))
+        carry(options, &scheme, &transfer, &to, placed, &origin).map_err(|e| failed(path, i, &e))
     })
 }
 
@@ -119,13 +119,18 @@ fn prepare(
     })
 }
 
-fn source(from: &Object, to: &Object) -> SourceRecord {
-    let distance = algebra::distance(from.surface.shape(), to.surface.shape());
-    SourceRecord {
-        kind: "transfer".to_owned(),
-        from: Some(from.record.name.clone()),
-        shape_distance_m: Some(distance),
-        source_quality: None,
+/// Where the grasps come from: the name of the object and the distance of its shape, metres.
+struct Origin {
+    name: String,
+    distance: f64,
+}
+
+impl Origin {
+    fn new(from: &Object, to: &Object) -> Self {
+        Self {
+            name: from.record.name.clone(),
+            distance: algebra::distance(from.surface.shape(), to.surface.shape()),
+        }
     }
 }
 
@@ -135,7 +140,7 @@ fn carry(
     transfer: &Transfer,
     to: &Object,
     placed: &Placed,
-    source: &SourceRecord,
+    origin: &Origin,
 ) -> Result<Moved, TransferError> {
     let mut steps = Vec::new();
     let keep = |t: f64, step: &Step| {
@@ -158,9 +163,10 @@ fn carry(
         quality: end.quality,
         evaluations: end.evaluations,
         stationarity: end.stationarity,
-        source: SourceRecord {
+        source: SourceRecord::Transfer {
+            from: Some(origin.name.clone()),
+            shape_distance_m: Some(origin.distance),
             source_quality: Some(end.start_quality),
-            ..source.clone()
         },
         steps,
     })

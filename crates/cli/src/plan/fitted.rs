@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use moduli::records::stored_shape;
 use nalgebra::Point3;
 use shape::{Fit, RadialShape};
 
@@ -35,7 +36,7 @@ impl Fitted {
     pub(crate) fn read(path: &Path) -> Result<(String, Self), Failure> {
         let record = input::shape_record(path)?;
         let fitted = Self {
-            shape: record.shape().map_err(|e| Failure::input(path, e))?,
+            shape: stored_shape(&record).map_err(|e| Failure::input(path, e))?,
             centre_in_cloud: record.centre_in_cloud(),
             rms: record.rms_m,
             points: record.points as usize,

@@ -3,7 +3,7 @@
 use hand::{Hand, hand_meshes};
 use nalgebra::{Isometry3, Vector3};
 use record::GraspsFile;
-use record::grasps::{ConventionRecord, SourceRecord};
+use record::grasps::{ConventionRecord, EdgesRecord, JointRecord, JointUnit, SourceRecord};
 use report::{GraspPage, Mesh, PageGrasp, grasp_page};
 use shape::{PointCloud, TriangleMesh};
 
@@ -77,9 +77,11 @@ fn drawn_hand(hand: &Hand, joints: &[f64], cloud_from_palm: &Isometry3<f64>) -> 
 
 /// "synthesis", or "transfer from S5 shampoo bottle".
 pub(crate) fn source_label(source: &SourceRecord) -> String {
-    match &source.from {
-        Some(from) => format!("{} from {from}", source.kind),
-        None => source.kind.clone(),
+    match source {
+        SourceRecord::Transfer {
+            from: Some(from), ..
+        } => format!("{} from {from}", source.kind()),
+        _ => source.kind().to_owned(),
     }
 }
 
@@ -89,9 +91,10 @@ fn facts(target: &Target, mesh: &TriangleMesh, convention: &ConventionRecord) ->
     let torque = convention
         .torque_length_m
         .map_or(String::new(), |l| format!(", torques per {} mm", 1e3 * l));
-    let edges = convention
-        .edges
-        .map_or("round cone".to_owned(), |k| format!("{k} edges"));
+    let edges = match convention.edges {
+        EdgesRecord::Round { .. } => "round cone".to_owned(),
+        EdgesRecord::Polygon(count) => format!("{count} edges"),
+    };
     vec![
         format!(
             "{} points, {:.0} × {:.0} × {:.0} mm; degree {}, fitted to {:.2} mm (root mean square).",
@@ -128,13 +131,19 @@ fn extent(mesh: &TriangleMesh) -> Vector3<f64> {
 
 fn details(record: &record::GraspRecord) -> Vec<(String, String)> {
     let mut facts = Vec::new();
-    if let Some(distance) = record.source.shape_distance_m {
+    let distance = match &record.source {
+        SourceRecord::Transfer {
+            shape_distance_m, ..
+        } => *shape_distance_m,
+        _ => None,
+    };
+    if let Some(distance) = distance {
         facts.push((
             "distance of the shapes".to_owned(),
             format!("{:.1} mm", 1e3 * distance),
         ));
     }
-    if let Some(quality) = record.source.source_quality {
+    if let Some(quality) = record.source.source_quality() {
         facts.push((
             "quality on the known object".to_owned(),
             format!("{quality:.3}"),
@@ -146,9 +155,33 @@ fn details(record: &record::GraspRecord) -> Vec<(String, String)> {
             let error = format!("within {:.1} mm", 1e3 * hand.contact_error_m);
             facts.push(("tips at the contacts".to_owned(), error));
         }
-        for (joint, value) in &hand.joints_rad {
-            facts.push((joint.clone(), format!("{:.1}°", value.to_degrees())));
+        for (name, joint) in &hand.joints {
+            facts.push((name.clone(), joint_value(joint)));
         }
     }
     facts
+}
+
+/// Degrees for joints that turn, millimetres for joints that slide.
+fn joint_value(joint: &JointRecord) -> String {
+    // Adding 0 leaves no negative zero.
+    match joint.unit {
+        Some(JointUnit::Radians) => format!("{:.1}°", joint.value.to_degrees() + 0.0),
+        Some(JointUnit::Metres) => format!("{:.1} mm", 1e3 * joint.value + 0.0),
+        None => format!("{} rad or m", joint.value),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sliding_joints_are_shown_in_millimetres() {
+        let joint = |value, unit| joint_value(&JointRecord { value, unit });
+        assert_eq!(joint(0.0205, Some(JointUnit::Metres)), "20.5 mm");
+        assert_eq!(joint(0.5, Some(JointUnit::Radians)), "28.6°");
+        assert_eq!(joint(-0.0, Some(JointUnit::Radians)), "0.0°");
+        assert_eq!(joint(0.0205, None), "0.0205 rad or m");
+    }
 }

@@ -3,9 +3,11 @@
 use std::collections::BTreeMap;
 
 use hand::{Hand, ReachParams};
+use moduli::records::{convention_record, joint_record};
 use nalgebra::{Isometry3, Point3, Translation3};
 use record::grasps::{
-    ConventionRecord, GRASPS_VERSION, HandRecord, ObjectRecord, PoseRecord, SourceRecord,
+    AssessmentRecord, ExecutionRecord, GRASPS_VERSION, HandRecord, JointRecord, ObjectRecord,
+    PoseRecord, SourceRecord,
 };
 use record::{GraspRecord, GraspsFile};
 use shape::Surface;
@@ -33,8 +35,9 @@ pub(crate) fn grasps_file(target: &Target, hand: &Hand, ranked: &[Candidate]) ->
             r_max_certified_m: r_max,
             centre_of_mass_m: in_cloud(&shape.centre_of_mass(), &centre),
             volume_m3: shape.mass_properties().volume,
+            ..ObjectRecord::default()
         },
-        convention: ConventionRecord::from(&target.convention),
+        convention: convention_record(&target.convention),
         grasps: ranked
             .iter()
             .enumerate()
@@ -72,23 +75,23 @@ fn grasp_record(
             .hand
             .as_ref()
             .map(|placement| hand_record(candidate, placement, hand, centre)),
+        directions: candidate
+            .directions
+            .iter()
+            .map(|p| p.into_inner().into())
+            .collect(),
+        assessment: AssessmentRecord::default(),
     }
 }
 
 fn source_record(source: &Source) -> SourceRecord {
     match source {
-        Source::Synthesis { .. } => SourceRecord {
-            kind: "synthesis".to_owned(),
-            from: None,
-            shape_distance_m: None,
-            source_quality: None,
-        },
+        Source::Synthesis { .. } => SourceRecord::Synthesis,
         Source::Transfer {
             from,
             shape_distance,
             source_quality,
-        } => SourceRecord {
-            kind: "transfer".to_owned(),
+        } => SourceRecord::Transfer {
             from: Some(from.clone()),
             shape_distance_m: Some(*shape_distance),
             source_quality: Some(*source_quality),
@@ -115,19 +118,19 @@ fn hand_record(
     HandRecord {
         name: hand.name().to_owned(),
         palm_link: hand.model().links()[0].name.clone(),
-        object_from_palm: PoseRecord {
-            translation_m: pose.translation.vector.into(),
-            quaternion_xyzw: pose.rotation.coords.into(),
-        },
-        joints_rad: by_name(hand, &placement.joints),
-        pregrasp_joints_rad: by_name(hand, &before),
+        cloud_from_palm: PoseRecord::from(&pose),
+        joints: by_name(hand, &placement.joints),
+        pregrasp_joints: by_name(hand, &before),
         contact_error_m: placement.contact_error,
+        execution: ExecutionRecord::default(),
     }
 }
 
-fn by_name(hand: &Hand, joints: &[f64]) -> BTreeMap<String, f64> {
-    let names = hand.model().driven_names().into_iter().map(str::to_owned);
-    names.zip(joints.iter().copied()).collect()
+fn by_name(hand: &Hand, joints: &[f64]) -> BTreeMap<String, JointRecord> {
+    let driven = hand.model().driven_joints().zip(joints);
+    driven
+        .map(|(joint, value)| (joint.name.clone(), joint_record(joint.kind, *value)))
+        .collect()
 }
 
 /// The joints with every finger opened by as much as the search for a hand opens it.

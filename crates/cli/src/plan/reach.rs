@@ -81,6 +81,7 @@ fn settle_for(
     if found.quality >= naive.max(LEAST_QUALITY) {
         candidate.quality = found.quality;
         candidate.contacts.clone_from(&found.reached.contacts);
+        candidate.directions.clone_from(&found.reached.directions);
         candidate.hand = Some(HandPlacement {
             contact_error: 0.0,
             met: false,

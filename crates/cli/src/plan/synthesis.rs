@@ -72,6 +72,7 @@ pub(crate) fn candidates(synthesis: &Synthesis, count: usize) -> Vec<Candidate> 
         .iter()
         .take(count)
         .map(|grasp| Candidate {
+            directions: grasp.directions.clone(),
             contacts: grasp.contacts.clone(),
             quality: grasp.quality,
             source: Source::Synthesis {

@@ -2,6 +2,7 @@
 
 use hand::{HandState, carried_pose};
 use indicatif::ProgressBar;
+use moduli::records::{StoredShapeError, stored_coefficients, stored_shape};
 use rayon::prelude::*;
 use record::{LibraryEntry, LibraryGrasp, LibraryRecord};
 use shape::RadialField;
@@ -37,12 +38,12 @@ pub(crate) fn neighbours<'a>(
     count: usize,
 ) -> Result<Vec<Neighbour<'a>>, Failure> {
     let beta = target.fit.shape.coefficients();
-    let broken = |entry: &LibraryEntry, e: record::ShapeRecordError| {
+    let broken = |entry: &LibraryEntry, e: StoredShapeError| {
         Failure::other(format!("library object {}: {e}", entry.id))
     };
     let mut order = Vec::new();
     for entry in &library.entries {
-        let other = entry.shape.coefficients().map_err(|e| broken(entry, e))?;
+        let other = stored_coefficients(&entry.shape).map_err(|e| broken(entry, e))?;
         order.push((entry, beta.distance(&other)));
     }
     order.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -53,7 +54,9 @@ pub(crate) fn neighbours<'a>(
             Ok(Neighbour {
                 entry,
                 distance,
-                surface: RadialField::new(entry.shape.shape().map_err(|e| broken(entry, e))?),
+                surface: RadialField::new(
+                    stored_shape(&entry.shape).map_err(|e| broken(entry, e))?,
+                ),
             })
         })
         .collect()
@@ -116,10 +119,11 @@ fn carry(
     let contacts = contacts_on(surface, &arrived.contacts);
     let held = contacts_on(&neighbour.surface, directions);
     let hand = HandState {
-        object_from_palm: carried_pose(&grasp.object_from_palm(), &held, &contacts),
+        object_from_palm: carried_pose(&grasp.centred_from_palm(), &held, &contacts),
         joints: grasp.joints_rad.clone(),
     };
     Ok(Candidate {
+        directions: arrived.contacts,
         contacts,
         quality: arrived.quality,
         source: Source::Transfer {

@@ -2,7 +2,7 @@
 
 use grasp::Convention;
 use hand::{HandGrasp, OutcomeCounts, Synthesis};
-use record::grasps::ConventionRecord;
+use moduli::records::convention_record;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use sph::Direction;
@@ -80,7 +80,7 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
     let set = fitted_objects(run, None, 1)?;
     let ours = measure(run, &Plan::of(run), &set)?;
     let conventions = all_conventions();
-    let described: Vec<_> = conventions.iter().map(ConventionRecord::from).collect();
+    let described: Vec<_> = conventions.iter().map(convention_record).collect();
     Ok(Findings {
         objects: set.describe(),
         paper: json!({

@@ -2,6 +2,7 @@
 
 use experiments::library::{LibrarySettings, build};
 use grasp::Convention;
+use moduli::records::stored_shape;
 use record::{LibraryEntry, LibraryRecord};
 
 const STORED: &[u8] = fixtures::LIBRARY;
@@ -76,7 +77,7 @@ fn the_stored_library_is_usable_and_its_grasps_are_spread_out() {
     let stored = LibraryRecord::from_bytes(STORED).unwrap();
     let settings = LibrarySettings::standard(Convention::named("paper").unwrap());
     for entry in &stored.entries {
-        let shape = entry.shape.shape().unwrap();
+        let shape = stored_shape(&entry.shape).unwrap();
         let (low, high) = shape.radius_bounds();
         assert!(low > 0.005 && high < 0.2, "{}: {low} to {high}", entry.id);
         assert_eq!(entry.grasps.len(), settings.grasps, "{}", entry.id);

@@ -16,7 +16,7 @@ use serde_json::json;
 use space::Objective;
 use space::transfer::{Transfer, run_jobs};
 
-use super::{carry, failed, prepare, scheme_name, source};
+use super::{Origin, carry, failed, prepare, scheme_name};
 use crate::args::{Common, TransferOptions};
 use crate::delivery::{UNSTABLE_BELOW, move_all};
 use crate::failure::Failure;
@@ -203,9 +203,9 @@ impl Pair<'_> {
         };
         let objective = Objective::new(convention, &to.surface, &to.origin());
         let scheme = prepare(options, &transfer, &objective)?;
-        let source = source(from, to);
+        let origin = Origin::new(from, to);
         let moved = move_all(&self.from.grasps, |i, placed| {
-            carry(options, &scheme, &transfer, to, placed, &source)
+            carry(options, &scheme, &transfer, to, placed, &origin)
                 .map_err(|e| failed(&self.from.path, i, &e))
         })?;
         let file = to.file(&objective, &moved);
@@ -224,7 +224,7 @@ impl Pair<'_> {
     fn line(&self, file: &GraspsFile) -> PairLine {
         let count = file.grasps.len() as f64;
         let qualities = || file.grasps.iter().map(|g| g.quality);
-        let starts = file.grasps.iter().filter_map(|g| g.source.source_quality);
+        let starts = file.grasps.iter().filter_map(|g| g.source.source_quality());
         PairLine {
             from: self.from.side.stem.clone(),
             to: self.to.stem.clone(),
