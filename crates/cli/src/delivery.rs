@@ -16,8 +16,6 @@ use crate::placed::{Moved, Object, Placed, TraceStep};
 
 /// Version of the layout of traces.
 const TRACE_VERSION: u32 = 1;
-/// A grasp of less quality counts as unstable.
-pub(crate) const UNSTABLE_BELOW: f64 = 0.01;
 /// Rows of the table on standard output.
 const SHOWN: usize = 20;
 
@@ -119,7 +117,10 @@ impl Movement<'_> {
             grasps: moved.len(),
             improved: moved.iter().filter(|m| m.quality > m.start_quality).count(),
             below_start: moved.iter().filter(|m| m.quality < m.start_quality).count(),
-            unstable: moved.iter().filter(|m| m.quality < UNSTABLE_BELOW).count(),
+            unstable: moved
+                .iter()
+                .filter(|m| !self.objective.convention().is_stable(m.quality))
+                .count(),
             mean_start: moved.iter().map(|m| m.start_quality).sum::<f64>() / count,
             mean_final: moved.iter().map(|m| m.quality).sum::<f64>() / count,
             best: moved.iter().map(|m| m.quality).fold(0.0, f64::max),
@@ -146,7 +147,7 @@ impl Movement<'_> {
 impl Summary<'_> {
     fn say(&self) {
         output::say(format!(
-            "{} grasps on {}: mean {:.4} → {:.4}, best {:.4}, {} improved, {} below 0.01 under `{}`; {} qualities, {:.2} s",
+            "{} grasps on {}: mean {:.4} → {:.4}, best {:.4}, {} improved, {} not stable under `{}`; {} qualities, {:.2} s",
             self.grasps,
             self.object,
             self.mean_start,

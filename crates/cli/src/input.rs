@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use grasp::{Convention, Edges, TorqueLength};
+use grasp::{Convention, Edges};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use record::{EnvelopeError, GraspsFile, ShapeRecord};
@@ -96,11 +96,6 @@ pub(crate) fn grasps(path: &Path) -> Result<GraspsFile, Failure> {
     GraspsFile::from_json(&read(path)?).map_err(|e| Failure::input(path, e))
 }
 
-/// The convention of the paper.
-pub(crate) fn paper_convention() -> Result<Convention, Failure> {
-    Convention::named("paper").map_err(|e| Failure::other(e.to_string()))
-}
-
 /// The convention that the options name and change.
 pub(crate) fn convention(options: &ConventionOptions) -> Result<Convention, Failure> {
     let mut convention =
@@ -109,7 +104,7 @@ pub(crate) fn convention(options: &ConventionOptions) -> Result<Convention, Fail
         convention.friction = friction;
     }
     if let Some(length) = options.torque_length {
-        convention.torque_length = TorqueLength::Metres(length);
+        convention = convention.with_torque_length(length);
     }
     match options.edges.as_deref() {
         None => {}

@@ -20,6 +20,8 @@ pub(crate) use fitted::Fitted;
 pub(crate) struct Target<'a> {
     pub(crate) name: &'a str,
     pub(crate) fit: &'a Fitted,
+    /// The rule, as it holds on any object.
+    pub(crate) rule: &'a Convention,
     /// With everything that the surface decides filled in.
     pub(crate) convention: Convention,
     /// The point about which torques are taken, centred frame.
@@ -27,11 +29,12 @@ pub(crate) struct Target<'a> {
 }
 
 impl<'a> Target<'a> {
-    pub(crate) fn new(name: &'a str, fit: &'a Fitted, convention: &Convention) -> Self {
-        let objective = Objective::new(convention, &fit.shape, &fit.object_origin());
+    pub(crate) fn new(name: &'a str, fit: &'a Fitted, rule: &'a Convention) -> Self {
+        let objective = Objective::new(rule, &fit.shape, &fit.object_origin());
         Self {
             name,
             fit,
+            rule,
             convention: objective.convention().clone(),
             centre: objective.centre(),
         }

@@ -13,7 +13,6 @@ use sph::Direction;
 
 use crate::error::ExperimentError;
 use crate::objects::{ObjectCloud, ObjectSource, Objects, Refused};
-use crate::paper;
 use crate::run::{Purpose, Run, generator};
 
 /// An object with its surface.
@@ -162,23 +161,6 @@ pub fn fit_all(objects: Objects, settings: &FitSettings) -> FittedSet {
     set
 }
 
-/// The quality from which a grasp counts as stable: the paper's 0.01 under the paper's convention.
-///
-/// Other conventions have other scales (metres give a hundredth of it), so under them every
-/// force-closed grasp counts.
-pub fn least_quality(convention: &Convention) -> f64 {
-    if convention.name == "paper" {
-        paper::UNSTABLE_BELOW
-    } else {
-        0.0
-    }
-}
-
-/// Whether a quality counts as stable under a convention.
-pub fn is_stable(quality: f64, convention: &Convention) -> bool {
-    quality > 0.0 && quality >= least_quality(convention)
-}
-
 /// Hand grasps on an object (Sec. IV-C): poses drawn first with the object's own generator, then
 /// evaluated in parallel, ranked by quality under the convention.
 pub fn synthesize(
@@ -196,7 +178,7 @@ pub fn synthesize(
         rules: ClosingRules::default(),
         convention: objective.convention().clone(),
         centre: objective.centre(),
-        least_quality: least_quality(convention),
+        least_quality: convention.stable_above,
     };
     let mut rng = generator(seed, Purpose::Poses, fitted.number());
     let drawn = params.sampling.sample(surface, hand, poses, &mut rng);

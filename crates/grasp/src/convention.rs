@@ -143,7 +143,13 @@ pub struct Convention {
     pub tangent: TangentRule,
     /// The number printed for a grasp that is not force-closed.
     pub not_closed: f64,
+    /// The quality from which a grasp counts as stable. The paper's 0.01 belongs to `paper` alone,
+    /// since every convention has a scale of its own; 0 under the others: stable means closed.
+    pub stable_above: f64,
 }
+
+/// The quality from which the paper counts a grasp as stable (Sec. IV-E), in its own scale.
+const PAPER_STABLE_ABOVE: f64 = 0.01;
 
 impl Convention {
     /// The names that `Convention::named` knows.
@@ -151,10 +157,14 @@ impl Convention {
         ["paper", "graspit", "dexnet", "frogger", "openrave", "unit"];
 
     /// Our reading of Grasp Moduli Spaces (ICRA 2014), which states none of these numbers: μ = 1, ten
-    /// edges of unit normal component, torques in centimetres about the mean of the cloud.
+    /// edges of unit normal component, torques in centimetres about the mean of the cloud. A grasp is
+    /// stable from a quality of 0.01 (Sec. IV-E).
     pub fn paper() -> Self {
         let torque_length = TorqueLength::Metres(0.01);
-        Self::of("paper", torque_length, CentreRule::CloudMean, 1.0, 10)
+        Convention {
+            stable_above: PAPER_STABLE_ABOVE,
+            ..Self::of("paper", torque_length, CentreRule::CloudMean, 1.0, 10)
+        }
     }
 
     /// `GraspIt!`: torques over the largest distance from the centre of mass, eight edges, −1 when not
@@ -217,6 +227,7 @@ impl Convention {
             edges: Edges::Polygon(edges),
             tangent: TangentRule::LeastAligned,
             not_closed: 0.0,
+            stable_above: 0.0,
         }
     }
 
@@ -239,6 +250,30 @@ impl Convention {
                 name: name.to_owned(),
             }),
         }
+    }
+
+    /// The same convention with torques per `metres`.
+    ///
+    /// A threshold of stability belongs to a scale of torques: under another one a grasp counts as
+    /// stable when it is closed.
+    pub fn with_torque_length(self, metres: f64) -> Self {
+        let torque_length = TorqueLength::Metres(metres);
+        let stable_above = if torque_length == self.torque_length {
+            self.stable_above
+        } else {
+            0.0
+        };
+        Self {
+            torque_length,
+            stable_above,
+            ..self
+        }
+    }
+
+    /// Whether a grasp of this quality counts as stable: closed, and not below
+    /// [`Convention::stable_above`]. For an interval, pass its proved lower end.
+    pub fn is_stable(&self, quality: f64) -> bool {
+        quality > 0.0 && quality >= self.stable_above
     }
 
     /// Checks friction, edges and a fixed torque length.

@@ -25,7 +25,7 @@ use record::LibraryRecord;
 use shape::{RadialField, RadialShape};
 use space::Continuation;
 use space::point::contacts_on;
-use space::transfer::{Job, Transfer, all_pairs};
+use space::transfer::{Job, Transfer, TransferEnd, all_pairs};
 use sph::Coefficients;
 
 type Failure = Box<dyn Error + Send + Sync>;
@@ -133,15 +133,12 @@ impl Study {
     fn carry(&self, job: &Job, reacher: &Reacher<'_>) -> Result<Row, Failure> {
         let (from, to) = (&self.surfaces[job.from], &self.surfaces[job.to]);
         let source = &self.grasps[job.from][job.grasp];
-        let transfer = Transfer {
-            from,
-            to,
-            convention: &self.convention,
+        let end = |surface| TransferEnd {
+            surface,
             object_origin: Point3::origin(),
         };
-        let scheme = Continuation::default();
-        let stations = scheme.stations(&transfer)?;
-        let arrived = scheme.carry(&transfer, &stations, &source.directions, |_, _| {})?;
+        let transfer = Transfer::new(end(from), end(to), &self.convention);
+        let arrived = Continuation::default().carry(&transfer, &source.directions)?;
         let naive = transfer.naive(&source.directions)?.quality;
         let wanted = contacts_on(to, &arrived.contacts);
         let known = HandState {

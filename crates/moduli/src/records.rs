@@ -111,7 +111,7 @@ pub fn convention_record(convention: &Convention) -> ConventionRecord {
             TangentRule::LeastAligned => TangentRecord::LeastAligned,
             TangentRule::Projected(axis) => TangentRecord::Projected(axis.into()),
         },
-        stable_above: None,
+        stable_above: Some(convention.stable_above),
     }
 }
 
@@ -146,9 +146,17 @@ pub fn convention(record: &ConventionRecord) -> Result<Convention, ConventionErr
             TangentRecord::Projected(axis) => TangentRule::Projected(axis.into()),
         },
         not_closed: record.not_closed,
+        stable_above: record
+            .stable_above
+            .unwrap_or_else(|| stable_above(&record.name)),
     };
     convention.validate()?;
     Ok(convention)
+}
+
+/// The threshold of a convention in a file that does not state it: that of its name.
+fn stable_above(name: &str) -> f64 {
+    Convention::named(name).map_or(0.0, |known| known.stable_above)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ mod monotone;
 mod paper;
 mod walls;
 
-pub use monotone::{AscentError, MonotoneAscent, WORTH};
+pub use monotone::{AscentError, MonotoneAscent};
 pub use paper::PaperAscent;
 
 use sph::Direction;

@@ -12,6 +12,7 @@ pub mod objective;
 pub mod path;
 pub mod point;
 pub mod quality;
+pub mod resolved;
 pub mod sample;
 mod scatter;
 pub mod transfer;
@@ -23,4 +24,7 @@ pub use objective::Objective;
 pub use path::Path;
 pub use point::ModuliPoint;
 pub use quality::{ByDifferences, LinearPieces, Quality};
-pub use transfer::{Continuation, PaperTransfer, Recovery, TransferError, Transferred};
+pub use resolved::ResolvedConvention;
+pub use transfer::{
+    Continuation, PaperTransfer, Recovery, Transfer, TransferEnd, TransferError, Transferred,
+};

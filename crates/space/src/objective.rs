@@ -1,19 +1,17 @@
 //! Grasp quality as a function of contacts on one surface, under one convention.
 
 use grasp::{
-    ActiveFacet, CentreRule, Contact, Convention, Edges, Epsilon, FrameRule, Gradient, GraspModel,
-    Margin, QualityError, TangentRule, TorqueLength, Workspace,
+    ActiveFacet, Contact, Convention, Edges, Epsilon, FrameRule, Gradient, GraspModel, Margin,
+    QualityError, TangentRule, Workspace,
 };
 use nalgebra::{Point3, Vector3};
 use shape::{Differential, Surface};
 use sph::Direction;
-use sph::direction::even_directions;
 
 use crate::point::contact_on;
 use crate::quality::{LinearPieces, Quality, in_frame};
+use crate::resolved::ResolvedConvention;
 
-/// Points of the surface among which the farthest from the centre is sought.
-const EXTENT_DIRECTIONS: usize = 2_000;
 /// Facets up to this share of Q above Q are linearised: the others are learnt from rejected steps.
 const BAND: f64 = 0.06;
 /// A facet with a weight below this has the foot of its plane far outside.
@@ -26,8 +24,7 @@ const FACETS: usize = 40;
 /// Q of contacts on a surface: the convention with everything the surface decides filled in.
 #[derive(Clone, Debug)]
 pub struct Objective {
-    convention: Convention,
-    centre: Point3<f64>,
+    resolved: ResolvedConvention,
     workspace: Workspace,
     /// For round cones.
     pyramids: Option<Pyramids>,
@@ -97,34 +94,20 @@ struct Scratch {
 }
 
 impl Objective {
-    /// Resolves the convention on a surface.
-    ///
-    /// `object_origin` is the origin of the user's frame in the centred frame; conventions with
-    /// [`CentreRule::ObjectOrigin`] and [`CentreRule::Given`] take torques about it. The cloud mean
-    /// is the origin of the centred frame. A torque length of `MaxContactDistance` becomes the
-    /// largest distance of the surface from the centre, as the systems that use it define it.
+    /// Resolves a convention on a surface; see [`ResolvedConvention::new`].
     pub fn new(
         convention: &Convention,
         surface: &impl Surface,
         object_origin: &Point3<f64>,
     ) -> Self {
-        let centre = match convention.centre {
-            CentreRule::CloudMean => Point3::origin(),
-            CentreRule::CentreOfMass => surface.centre_of_mass(),
-            CentreRule::ObjectOrigin | CentreRule::Given => *object_origin,
-        };
-        let mut convention = convention.clone();
-        if convention.torque_length == TorqueLength::MaxContactDistance {
-            let reach = even_directions(EXTENT_DIRECTIONS)
-                .iter()
-                .map(|p| (surface.point(p) - centre).norm())
-                .fold(0.0, f64::max);
-            convention.torque_length = TorqueLength::Metres(reach);
-        }
+        Self::of(ResolvedConvention::new(convention, surface, object_origin))
+    }
+
+    /// Q under a convention that is resolved already.
+    pub fn of(resolved: ResolvedConvention) -> Self {
         Self {
-            pyramids: Pyramids::of(&convention),
-            convention,
-            centre,
+            pyramids: Pyramids::of(resolved.convention()),
+            resolved,
             workspace: Workspace::with_warm_start(),
             contacts: Vec::new(),
             evaluations: 0,
@@ -135,22 +118,17 @@ impl Objective {
     /// The same quality with another friction coefficient: what is still closed under a smaller one
     /// has that much of its friction cones to spare.
     pub fn with_friction(&self, friction: f64) -> Self {
-        let mut other = self.clone();
-        other.convention.friction = friction;
-        other.pyramids = Pyramids::of(&other.convention);
-        other.evaluations = 0;
-        other.scratch.last = None;
-        other
+        Self::of(self.resolved.with_friction(friction))
     }
 
     /// The convention with its torque length resolved.
     pub fn convention(&self) -> &Convention {
-        &self.convention
+        self.resolved.convention()
     }
 
     /// The point about which torques are taken, centred frame, metres.
     pub fn centre(&self) -> Point3<f64> {
-        self.centre
+        self.resolved.centre()
     }
 
     /// How many qualities have been computed so far.
@@ -172,14 +150,16 @@ impl Objective {
     /// The full answer for a list of contacts.
     pub fn epsilon(&mut self, contacts: &[Contact]) -> Result<Epsilon, QualityError> {
         self.evaluations += 1;
-        let model = GraspModel::new(contacts, &self.centre, &self.convention);
+        let centre = self.resolved.centre();
+        let model = GraspModel::new(contacts, &centre, self.resolved.convention());
         grasp::epsilon(&model, &mut self.workspace)
     }
 
     /// Q, or minus the distance from force closure, with the facet that decides.
     pub fn margin(&mut self, contacts: &[Contact]) -> Result<Margin, QualityError> {
         self.evaluations += 1;
-        let model = GraspModel::new(contacts, &self.centre, &self.convention);
+        let centre = self.resolved.centre();
+        let model = GraspModel::new(contacts, &centre, self.resolved.convention());
         grasp::margin(&model, &mut self.workspace)
     }
 
@@ -191,7 +171,8 @@ impl Objective {
         facets: &mut Vec<ActiveFacet>,
     ) -> Result<(), QualityError> {
         self.evaluations += 1;
-        let model = GraspModel::new(contacts, &self.centre, &self.convention);
+        let centre = self.resolved.centre();
+        let model = GraspModel::new(contacts, &centre, self.resolved.convention());
         grasp::near_active_facets(&model, band, &mut self.workspace, facets)
     }
 
@@ -203,7 +184,8 @@ impl Objective {
         frame: FrameRule,
         gradient: &mut Gradient,
     ) -> Result<(), QualityError> {
-        let model = GraspModel::new(contacts, &self.centre, &self.convention);
+        let centre = self.resolved.centre();
+        let model = GraspModel::new(contacts, &centre, self.resolved.convention());
         Ok(grasp::facet_gradient(&model, facet, frame, gradient)?)
     }
 
@@ -254,7 +236,7 @@ impl<S: Surface> Quality<S> for Objective {
         if !margin.closed {
             facets.push(margin.facet);
         } else if let Some(mut pyramids) = self.pyramids.take() {
-            let found = pyramids.near_facets(&self.contacts, &self.centre, &mut facets);
+            let found = pyramids.near_facets(&self.contacts, &self.resolved.centre(), &mut facets);
             self.pyramids = Some(pyramids);
             floor = found?;
             self.chain(contacts, &margin.facet, pieces.push(0.0))?;
@@ -295,10 +277,10 @@ impl<S: Surface> Quality<S> for Objective {
         walls: &mut LinearPieces,
     ) {
         walls.reset(contacts.len());
-        if !matches!(self.convention.edges, Edges::Polygon(_)) {
+        if !matches!(self.resolved.convention().edges, Edges::Polygon(_)) {
             return;
         }
-        let rule = self.convention.tangent;
+        let rule = self.resolved.convention().tangent;
         for (i, (s, p)) in side.iter().zip(contacts).enumerate() {
             let at = surface.differential(p);
             let side = if s == p {
@@ -319,6 +301,10 @@ impl<S: Surface> Quality<S> for Objective {
 
     fn evaluations(&self) -> usize {
         self.evaluations
+    }
+
+    fn stable_above(&self) -> f64 {
+        self.resolved.convention().stable_above
     }
 }
 
@@ -362,7 +348,7 @@ impl Objective {
     ) -> Result<(), QualityError> {
         let mut gradient = std::mem::take(&mut self.scratch.gradient);
         // The pyramids in round cones have no frames of their own.
-        let frame = match self.convention.edges {
+        let frame = match self.resolved.convention().edges {
             Edges::Polygon(_) => FrameRule::Tangent,
             Edges::Round { .. } => FrameRule::Transported,
         };

@@ -105,6 +105,11 @@ pub trait Quality<S> {
         slope: &mut [f64],
     ) -> Result<(), QualityError>;
 
+    /// The value from which a grasp counts as stable; 0, which every closed grasp passes, by default.
+    fn stable_above(&self) -> f64 {
+        0.0
+    }
+
     /// Where the quality jumps: the walls around the side on which `side` is, as functions of the moves
     /// from `contacts`, positive on that side, linearised. `walls` is emptied before; their number and
     /// order depend on nothing but the side. None by default.

@@ -1,10 +1,13 @@
 //! Carrying grasps from one shape to another (Sec. IV-E).
 
 mod continuation;
-mod matrix;
+mod jobs;
 
 pub use continuation::{Continuation, Recovery, Splitting};
-pub use matrix::{Job, Matrix, Progress, all_pairs, run_jobs};
+pub use jobs::{Job, Progress, all_pairs, run_jobs};
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use grasp::{Convention, QualityError};
 use nalgebra::Point3;
@@ -28,12 +31,6 @@ pub enum TransferError {
     /// Nothing on the target keeps the limits, or they are no numbers.
     #[error(transparent)]
     Constraints(#[from] ConstraintError),
-    /// A job names an object or a grasp that is not there.
-    #[error("no transfer of grasp {} from object {} to object {}", job.grasp, job.from, job.to)]
-    Job {
-        /// The job.
-        job: Job,
-    },
 }
 
 /// A grasp that has arrived.
@@ -83,31 +80,95 @@ impl std::fmt::Display for StillOpen {
     }
 }
 
-/// What both schemes need: where from, where to, and how quality is measured.
+/// One side of a transfer.
 #[derive(Clone, Copy, Debug)]
-pub struct Transfer<'a> {
-    /// The known object.
-    pub from: &'a RadialField,
-    /// The target.
-    pub to: &'a RadialField,
-    /// The convention of Q.
-    pub convention: &'a Convention,
-    /// Origin of the user's frame in the centred frame; matters only to conventions that use it.
+pub struct TransferEnd<'a> {
+    /// The surface, in its centred frame.
+    pub surface: &'a RadialField,
+    /// The origin of this object's own cloud frame in its centred frame, metres; matters only to
+    /// conventions that take torques about it.
     pub object_origin: Point3<f64>,
 }
 
-impl Transfer<'_> {
-    /// Q on a shape along the way.
-    fn objective(&self, on: &RadialField) -> Objective {
-        Objective::new(self.convention, on, &self.object_origin)
+/// A pair of objects between which grasps are carried, and how quality is measured.
+///
+/// The convention is a rule: it is resolved on every shape γ(t) along the way, with the origin
+/// (1−t) o₁ + t o₂, so that qualities on the source belong to the source and those on the target to
+/// the target. The shapes along the way are made once per pair and number of intervals, when a scheme
+/// first asks for them.
+#[derive(Debug)]
+pub struct Transfer<'a> {
+    from: TransferEnd<'a>,
+    to: TransferEnd<'a>,
+    convention: &'a Convention,
+    stations: Mutex<BTreeMap<usize, Arc<[RadialField]>>>,
+}
+
+impl<'a> Transfer<'a> {
+    /// Prepares nothing yet: costs as little as its arguments.
+    pub fn new(from: TransferEnd<'a>, to: TransferEnd<'a>, convention: &'a Convention) -> Self {
+        Self {
+            from,
+            to,
+            convention,
+            stations: Mutex::default(),
+        }
+    }
+
+    /// The known object.
+    pub fn source(&self) -> &'a RadialField {
+        self.from.surface
+    }
+
+    /// The object on which grasps end.
+    pub fn target(&self) -> &'a RadialField {
+        self.to.surface
+    }
+
+    /// The shapes γ(k/n) = (1−k/n) r₁ + (k/n) r₂ for k = 0 … n, prepared for ascents; n is at
+    /// least 1. They are kept: a second call returns the same shapes.
+    ///
+    /// # Errors
+    /// The shapes cannot be combined.
+    pub fn stations(&self, intervals: usize) -> Result<Arc<[RadialField]>, TransferError> {
+        let n = intervals.max(1);
+        let mut kept = self.stations.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(stations) = kept.get(&n) {
+            return Ok(Arc::clone(stations));
+        }
+        let stations: Arc<[RadialField]> = (0..=n)
+            .map(|k| self.station(k as f64 / n as f64))
+            .collect::<Result<_, _>>()?;
+        kept.insert(n, Arc::clone(&stations));
+        Ok(stations)
+    }
+
+    /// The shape γ(t), made anew.
+    fn station(&self, t: f64) -> Result<RadialField, TransferError> {
+        RadialField::deformation(self.from.surface, self.to.surface, t).map_err(TransferError::from)
+    }
+
+    /// The origin of the user's frame on γ(t).
+    fn origin(&self, t: f64) -> Point3<f64> {
+        let (from, to) = (self.from.object_origin, self.to.object_origin);
+        Point3::from(from.coords * (1.0 - t) + to.coords * t)
+    }
+
+    /// Q on the shape γ(t).
+    fn objective(&self, t: f64, on: &RadialField) -> Objective {
+        Objective::new(self.convention, on, &self.origin(t))
     }
 
     /// The naive transfer: the contacts keep their θ and φ.
-    pub fn naive(&self, contacts: &[Direction]) -> Result<Transferred, TransferError> {
-        let start_quality = self.objective(self.from).quality_at(self.from, contacts)?;
-        let quality = self.objective(self.to).quality_at(self.to, contacts)?;
+    ///
+    /// # Errors
+    /// A quality cannot be computed.
+    pub fn naive(&self, directions: &[Direction]) -> Result<Transferred, TransferError> {
+        let (from, to) = (self.from.surface, self.to.surface);
+        let start_quality = self.objective(0.0, from).quality_at(from, directions)?;
+        let quality = self.objective(1.0, to).quality_at(to, directions)?;
         Ok(Transferred {
-            contacts: contacts.to_vec(),
+            contacts: directions.to_vec(),
             start_quality,
             quality,
             evaluations: 2,
@@ -131,37 +192,39 @@ pub struct PaperTransfer {
 }
 
 impl PaperTransfer {
-    /// The shapes γ(k/n), k = 0 … n; shared by all grasps of a pair.
-    pub fn stations(&self, transfer: &Transfer) -> Result<Vec<RadialField>, TransferError> {
-        stations(transfer, self.intervals)
-    }
-
-    /// Carries one grasp over `stations`; `trace` sees (t, state).
+    /// Carries one grasp from the source to the target.
+    ///
+    /// # Errors
+    /// As [`PaperTransfer::carry_traced`].
     pub fn carry(
         &self,
         transfer: &Transfer,
-        stations: &[RadialField],
-        contacts: &[Direction],
+        directions: &[Direction],
+    ) -> Result<Transferred, TransferError> {
+        self.carry_traced(transfer, directions, |_, _| {})
+    }
+
+    /// The same; `trace` sees every state with the parameter t of its shape.
+    ///
+    /// # Errors
+    /// The shapes cannot be combined, or a quality cannot be computed.
+    pub fn carry_traced(
+        &self,
+        transfer: &Transfer,
+        directions: &[Direction],
         mut trace: impl FnMut(f64, &Step),
     ) -> Result<Transferred, TransferError> {
+        let stations = transfer.stations(self.intervals)?;
         carry_over(
             transfer,
-            stations,
-            contacts,
+            &stations,
+            directions,
             |t, station, here, objective| {
                 self.ascent
                     .climb(station, here, objective, |step| trace(t, step))
             },
         )
     }
-}
-
-fn stations(transfer: &Transfer, intervals: usize) -> Result<Vec<RadialField>, TransferError> {
-    let n = intervals.max(1);
-    (0..=n)
-        .map(|k| RadialField::deformation(transfer.from, transfer.to, k as f64 / n as f64))
-        .collect::<Result<_, _>>()
-        .map_err(TransferError::from)
 }
 
 /// Climbs at every station in turn, each from where the one before ended.
@@ -186,8 +249,8 @@ fn carry_over(
     };
     let mut lost_at = None;
     for (k, station) in stations.iter().enumerate() {
-        let mut objective = transfer.objective(station);
         let t = parameter(k, stations.len());
+        let mut objective = transfer.objective(t, station);
         let ascent = climb(t, station, &arrived.contacts, &mut objective)?;
         if k == 0 {
             arrived.start_quality = ascent.start_quality;

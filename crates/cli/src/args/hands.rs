@@ -35,9 +35,10 @@ pub(crate) struct SynthesizeOptions {
     /// Grasps to keep, the best.
     #[arg(long, default_value_t = 50, value_parser = count_in::<1, 1_000_000>)]
     pub(crate) keep: usize,
-    /// Grasps of less quality count as unstable.
-    #[arg(long, default_value_t = 0.01, allow_negative_numbers = true)]
-    pub(crate) least_quality: f64,
+    /// Quality below which a grasp counts as unstable. When absent, the convention decides: 0.01
+    /// under `paper`; under the others every force-closed grasp is stable.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) least_quality: Option<f64>,
     /// Power grasps: close past the tips until every link of a finger holds the object or its joints
     /// are at their limits; all links that touch are contacts.
     #[arg(long)]

@@ -19,8 +19,6 @@ use crate::{hands, input, output};
 
 /// The built-in object that stands for "never seen before".
 const UNSEEN: &str = "U1";
-/// Grasps below this count as unstable (Sec. IV-E of the paper).
-const LEAST_QUALITY: f64 = 0.01;
 
 #[derive(Serialize)]
 struct GraspLine {
@@ -74,7 +72,7 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
     let request = Request {
         poses: options.poses,
         preshapes: (0..hand.preshapes().len()).collect(),
-        least_quality: LEAST_QUALITY,
+        least_quality: target.convention.stable_above,
         standoff: None,
         power: false,
         seed: common.seed,

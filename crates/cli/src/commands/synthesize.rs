@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use grasp::Convention;
 use hand::{Hand, Synthesis};
 use serde::Serialize;
 
@@ -44,7 +45,7 @@ pub(crate) fn run(options: &SynthesizeOptions, common: &Common) -> Result<(), Fa
     let start = Instant::now();
     let convention = input::convention(&options.convention)?;
     let hand = hands::load(&options.hand)?;
-    let request = request(options, common, &hand)?;
+    let request = request(options, common, &hand, &convention)?;
     let (name, fitted) = Fitted::read(&options.shape)?;
     let target = Target::new(&name, &fitted, &convention);
     let bar = output::progress(common.quiet, options.poses, "closing the hand");
@@ -84,11 +85,16 @@ pub(crate) fn run(options: &SynthesizeOptions, common: &Common) -> Result<(), Fa
     Ok(())
 }
 
-fn request(options: &SynthesizeOptions, common: &Common, hand: &Hand) -> Result<Request, Failure> {
-    if !(options.least_quality.is_finite() && options.least_quality >= 0.0) {
+fn request(
+    options: &SynthesizeOptions,
+    common: &Common,
+    hand: &Hand,
+    convention: &Convention,
+) -> Result<Request, Failure> {
+    let least_quality = options.least_quality.unwrap_or(convention.stable_above);
+    if !(least_quality.is_finite() && least_quality >= 0.0) {
         return Err(Failure::usage(format!(
-            "--least-quality {}: expected a number, at least 0",
-            options.least_quality
+            "--least-quality {least_quality}: expected a number, at least 0"
         )));
     }
     let index = |name: &String| {
@@ -116,7 +122,7 @@ fn request(options: &SynthesizeOptions, common: &Common, hand: &Hand) -> Result<
     Ok(Request {
         poses: options.poses,
         preshapes,
-        least_quality: options.least_quality,
+        least_quality,
         standoff: options.standoff.or(nearer),
         power: options.power,
         seed: common.seed,

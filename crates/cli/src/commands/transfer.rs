@@ -5,12 +5,12 @@ mod matrix;
 use std::path::Path;
 use std::time::Instant;
 
+use grasp::Convention;
 use record::grasps::SourceRecord;
 use shape::{RadialField, Surface, algebra};
-use space::transfer::Transfer;
 use space::{
-    Constraints, Continuation, Objective, PaperAscent, PaperTransfer, Step, TransferError,
-    Transferred,
+    Constraints, Continuation, Objective, PaperAscent, PaperTransfer, Step, Transfer, TransferEnd,
+    TransferError, Transferred,
 };
 
 use crate::args::{Common, TransferOptions, TransferScheme};
@@ -29,10 +29,10 @@ const PAPER: PaperTransfer = PaperTransfer {
     },
 };
 
-/// How grasps are carried, with the shapes on the way.
+/// How grasps are carried.
 enum Scheme {
-    Ours(Continuation, Box<Constraints>, Vec<RadialField>),
-    Paper(Vec<RadialField>),
+    Ours(Continuation, Box<Constraints>),
+    Paper,
     Naive,
 }
 
@@ -53,15 +53,10 @@ fn one_pair(
     let convention = input::convention(&options.moved.convention)?;
     let (from, to) = (Object::read(from)?, Object::read(to)?);
     let grasps = from.grasps(path)?;
-    let transfer = Transfer {
-        from: &from.surface,
-        to: &to.surface,
-        convention: &convention,
-        object_origin: to.origin(),
-    };
+    let transfer = between(&from, &to, &convention);
     let start = Instant::now();
     let objective = Objective::new(&convention, &to.surface, &to.origin());
-    let scheme = prepare(options, &transfer, &objective)?;
+    let scheme = prepare(options, &objective)?;
     let origin = Origin::new(&from, &to);
     let movement = Movement {
         doing: "transferring",
@@ -93,17 +88,21 @@ fn scheme_name(options: &TransferOptions) -> &'static str {
     }
 }
 
-/// The scheme with the shapes on its way; `objective` is that of the target.
-fn prepare(
-    options: &TransferOptions,
-    transfer: &Transfer,
-    objective: &Objective,
-) -> Result<Scheme, Failure> {
+/// The pair of objects, each with the origin of its own cloud's frame.
+fn between<'a>(from: &'a Object, to: &'a Object, convention: &'a Convention) -> Transfer<'a> {
+    let end = |object: &'a Object| TransferEnd {
+        surface: &object.surface,
+        object_origin: object.origin(),
+    };
+    Transfer::new(end(from), end(to), convention)
+}
+
+/// The scheme that the options ask for; `objective` is that of the target.
+fn prepare(options: &TransferOptions, objective: &Objective) -> Result<Scheme, Failure> {
     let constraints = limits::constraints(&options.limits, objective)?;
     if options.scheme != TransferScheme::Ours && !constraints.is_empty() {
         return Err(Failure::usage("only --scheme ours knows limits"));
     }
-    let refused = |e: TransferError| Failure::refused(format!("shapes on the way: {e}"));
     Ok(match options.scheme {
         TransferScheme::Ours => {
             let scheme = if options.thorough {
@@ -111,10 +110,9 @@ fn prepare(
             } else {
                 Continuation::default()
             };
-            let stations = scheme.stations(transfer).map_err(refused)?;
-            Scheme::Ours(scheme, Box::new(constraints), stations)
+            Scheme::Ours(scheme, Box::new(constraints))
         }
-        TransferScheme::Paper => Scheme::Paper(PAPER.stations(transfer).map_err(refused)?),
+        TransferScheme::Paper => Scheme::Paper,
         TransferScheme::Naive => Scheme::Naive,
     })
 }
@@ -150,10 +148,10 @@ fn carry(
     };
     let start = &placed.directions;
     let end: Transferred = match scheme {
-        Scheme::Ours(scheme, constraints, stations) => {
-            scheme.carry_within(transfer, stations, start, constraints, keep)?
+        Scheme::Ours(scheme, constraints) => {
+            scheme.carry_traced(transfer, start, constraints, keep)?
         }
-        Scheme::Paper(stations) => PAPER.carry(transfer, stations, start, keep)?,
+        Scheme::Paper => PAPER.carry_traced(transfer, start, keep)?,
         Scheme::Naive => transfer.naive(start)?,
     };
     Ok(Moved {
@@ -178,6 +176,8 @@ fn points(transfer: &Transfer, to: &Object, t: f64, step: &Step) -> Vec<[f64; 3]
     let on = |surface: &RadialField, p| surface.point(p).coords;
     step.contacts
         .iter()
-        .map(|p| (on(transfer.from, p) * (1.0 - t) + on(transfer.to, p) * t + centre).into())
+        .map(|p| {
+            (on(transfer.source(), p) * (1.0 - t) + on(transfer.target(), p) * t + centre).into()
+        })
         .collect()
 }

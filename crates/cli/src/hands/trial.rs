@@ -1,19 +1,17 @@
 //! A hand tried on a ball: the easiest object there is.
 
+use grasp::Convention;
 use hand::{Hand, HandGrasp, OutcomeCounts};
 use indicatif::ProgressBar;
 use nalgebra::Point3;
 use shape::RadialShape;
 
 use crate::failure::Failure;
-use crate::input;
 use crate::plan::synthesis::{Request, synthesize};
 use crate::plan::{Fitted, Target};
 
 /// Poses tried.
 const POSES: usize = 200;
-/// Grasps below this count as unstable (Sec. IV-E of the paper).
-const LEAST_QUALITY: f64 = 0.01;
 
 /// What became of the poses.
 pub(crate) struct Trial {
@@ -41,11 +39,12 @@ pub(crate) fn on_ball(hand: &Hand, diameter_mm: f64, seed: u64) -> Result<Trial,
         rms: 0.0,
         points: 0,
     };
-    let target = Target::new("a ball", &fitted, &input::paper_convention()?);
+    let rule = Convention::paper();
+    let target = Target::new("a ball", &fitted, &rule);
     let request = Request {
         poses: POSES,
         preshapes: (0..hand.preshapes().len()).collect(),
-        least_quality: LEAST_QUALITY,
+        least_quality: rule.stable_above,
         standoff: None,
         power: false,
         seed,

@@ -14,8 +14,6 @@ use crate::failure::Failure;
 const TRIALS: usize = 40;
 /// First move of contacts in such a trial, metres.
 const SPREAD: f64 = 4e-3;
-/// Grasps of lower quality are none (Sec. IV-E of the paper).
-const LEAST_QUALITY: f64 = 0.01;
 
 /// Looks for a hand for every candidate that has none, in parallel.
 ///
@@ -78,7 +76,7 @@ fn settle_for(
     };
     let found = reacher.improve(&candidate.contacts, near, params, &improve, rng)?;
     let naive = candidate.carried.as_ref().map_or(0.0, |c| c.naive);
-    if found.quality >= naive.max(LEAST_QUALITY) {
+    if target.convention.is_stable(found.quality) && found.quality >= naive {
         candidate.quality = found.quality;
         candidate.contacts.clone_from(&found.reached.contacts);
         candidate.directions.clone_from(&found.reached.directions);

@@ -3,12 +3,13 @@
 use hand::{HandState, carried_pose};
 use indicatif::ProgressBar;
 use moduli::records::{StoredShapeError, stored_coefficients, stored_shape};
+use nalgebra::Point3;
 use rayon::prelude::*;
 use record::{LibraryEntry, LibraryGrasp, LibraryRecord};
 use shape::RadialField;
 use space::Continuation;
 use space::point::contacts_on;
-use space::transfer::Transfer;
+use space::{Transfer, TransferEnd};
 use sph::Direction;
 
 use super::{Candidate, Source, Target};
@@ -72,8 +73,22 @@ pub(crate) fn candidates(
     progress: &ProgressBar,
 ) -> Result<Vec<Candidate>, Failure> {
     let surface = RadialField::new(target.fit.shape.clone());
+    let to = TransferEnd {
+        surface: &surface,
+        object_origin: target.object_origin(),
+    };
+    let transfers: Vec<Transfer> = neighbours
+        .iter()
+        .map(|n| {
+            let from = TransferEnd {
+                surface: &n.surface,
+                object_origin: Point3::from(-n.entry.shape.centre_in_cloud().coords),
+            };
+            Transfer::new(from, to, target.rule)
+        })
+        .collect();
     let mut jobs = Vec::new();
-    for neighbour in neighbours {
+    for (neighbour, transfer) in neighbours.iter().zip(&transfers) {
         for grasp in neighbour.entry.grasps.iter().take(grasps) {
             let directions = grasp.directions().ok_or_else(|| {
                 Failure::other(format!(
@@ -81,13 +96,13 @@ pub(crate) fn candidates(
                     neighbour.entry.id
                 ))
             })?;
-            jobs.push((neighbour, grasp, directions));
+            jobs.push((neighbour, transfer, grasp, directions));
         }
     }
     progress.set_length(jobs.len() as u64);
     jobs.into_par_iter()
-        .map(|(neighbour, grasp, directions)| {
-            let candidate = carry(target, &surface, neighbour, grasp, &directions)?;
+        .map(|(neighbour, transfer, grasp, directions)| {
+            let candidate = carry(transfer, neighbour, grasp, &directions)?;
             progress.inc(1);
             Ok(candidate)
         })
@@ -95,8 +110,7 @@ pub(crate) fn candidates(
 }
 
 fn carry(
-    target: &Target,
-    surface: &RadialField,
+    transfer: &Transfer,
     neighbour: &Neighbour,
     grasp: &LibraryGrasp,
     directions: &[Direction],
@@ -104,19 +118,11 @@ fn carry(
     let failed = |e: space::TransferError| {
         Failure::refused(format!("transfer from {}: {e}", neighbour.entry.id))
     };
-    let transfer = Transfer {
-        from: &neighbour.surface,
-        to: surface,
-        convention: &target.convention,
-        object_origin: target.object_origin(),
-    };
-    let scheme = Continuation::default();
-    let stations = scheme.stations(&transfer).map_err(failed)?;
-    let arrived = scheme
-        .carry(&transfer, &stations, directions, |_, _| {})
+    let arrived = Continuation::default()
+        .carry(transfer, directions)
         .map_err(failed)?;
     let naive = transfer.naive(directions).map_err(failed)?.quality;
-    let contacts = contacts_on(surface, &arrived.contacts);
+    let contacts = contacts_on(transfer.target(), &arrived.contacts);
     let held = contacts_on(&neighbour.surface, directions);
     let hand = HandState {
         object_from_palm: carried_pose(&grasp.centred_from_palm(), &held, &contacts),

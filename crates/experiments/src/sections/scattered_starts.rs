@@ -231,10 +231,7 @@ fn carry(
     contacts: &[Direction],
 ) -> Result<Ours, ExperimentError> {
     let transfer = transfer_between(run, &set.objects[from], &set.objects[to]);
-    let with = |scheme: &Continuation| {
-        let stations = scheme.stations(&transfer)?;
-        scheme.carry(&transfer, &stations, contacts, |_, _| {})
-    };
+    let with = |scheme: &Continuation| scheme.carry(&transfer, contacts);
     let thorough = with(&Continuation::thorough())?;
     Ok(Ours {
         default: with(&Continuation::default())?.quality,

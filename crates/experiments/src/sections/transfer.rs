@@ -3,8 +3,8 @@
 use hand::HandGrasp;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use space::transfer::Transfer;
 use space::{Continuation, PaperTransfer};
+use space::{Transfer, TransferEnd};
 use sph::Direction;
 
 use crate::error::ExperimentError;
@@ -12,9 +12,7 @@ use crate::figures::{self, transfer::DrawnTransfer};
 use crate::ledger::{self, ThreadSeconds, run_kept};
 use crate::output::Findings;
 use crate::paper;
-use crate::pipeline::{
-    FittedObject, FittedSet, best_grasps, directions, fitted_objects, is_stable, least_quality,
-};
+use crate::pipeline::{FittedObject, FittedSet, best_grasps, directions, fitted_objects};
 use crate::run::Run;
 use crate::sections::gradient_ascent::paper_ascent;
 use crate::statistics::{mean, share};
@@ -147,7 +145,7 @@ pub fn run(run: &Run) -> Result<Findings, ExperimentError> {
             "grasps_per_source": plan.grasps,
             "stations": plan.transfer.intervals + 1,
             "steps_per_station": plan.transfer.ascent.steps,
-            "unstable_below": least_quality(&run.convention),
+            "unstable_below": run.convention.stable_above,
             "counts": counts,
             "thread_seconds": times,
             "transfers": carried,
@@ -205,12 +203,11 @@ pub fn transfer_between<'a>(
     from: &'a FittedObject,
     to: &'a FittedObject,
 ) -> Transfer<'a> {
-    Transfer {
-        from: &from.surface,
-        to: &to.surface,
-        convention: &run.convention,
-        object_origin: to.object_origin(),
-    }
+    let end = |object: &'a FittedObject| TransferEnd {
+        surface: &object.surface,
+        object_origin: object.object_origin(),
+    };
+    Transfer::new(end(from), end(to), &run.convention)
 }
 
 /// Carries all grasps of one source to one target, over the same stations.
@@ -219,11 +216,10 @@ fn carry_as_the_paper(
     transfer: &Transfer,
     starts: &[Vec<Direction>],
 ) -> Result<Vec<PaperCarried>, ExperimentError> {
-    let stations = plan.transfer.stations(transfer)?;
     starts
         .iter()
         .map(|start| {
-            let end = plan.transfer.carry(transfer, &stations, start, |_, _| {})?;
+            let end = plan.transfer.carry(transfer, start)?;
             Ok(PaperCarried {
                 initial: end.start_quality,
                 last: end.quality,
@@ -239,11 +235,10 @@ fn carry(
     starts: &[Vec<Direction>],
 ) -> Result<Vec<OurCarried>, ExperimentError> {
     let scheme = Continuation::default();
-    let stations = scheme.stations(transfer)?;
     starts
         .iter()
         .map(|start| {
-            let end = scheme.carry(transfer, &stations, start, |_, _| {})?;
+            let end = scheme.carry(transfer, start)?;
             Ok(OurCarried {
                 last: end.quality,
                 evaluations: end.evaluations,
@@ -266,7 +261,7 @@ fn drawn(
         return Ok(None);
     };
     let transfer = transfer_between(run, from, to);
-    let shapes = plan.transfer.stations(&transfer)?;
+    let shapes = transfer.stations(plan.transfer.intervals)?;
     let mut ends: Vec<(f64, Vec<Direction>, f64)> = Vec::new();
     let keep = |t: f64, step: &space::Step| {
         let state = (t, step.contacts.to_vec(), step.quality);
@@ -276,9 +271,9 @@ fn drawn(
         }
     };
     plan.transfer
-        .carry(&transfer, &shapes, &grasp.directions, keep)?;
+        .carry_traced(&transfer, &grasp.directions, keep)?;
     let stations = shapes
-        .into_iter()
+        .iter()
         .zip(ends)
         .map(|(surface, (_, contacts, quality))| (surface.shape().clone(), contacts, quality))
         .collect();
@@ -314,7 +309,7 @@ fn count(run: &Run, from: &str, carried: &[&Carried], unstable_in_paper: Option<
     let list = |pick: fn(&Carried) -> f64| carried.iter().map(|c| pick(c)).collect::<Vec<f64>>();
     let unstable = |list: &[f64]| {
         list.iter()
-            .filter(|q| !is_stable(**q, &run.convention))
+            .filter(|q| !run.convention.is_stable(**q))
             .count()
     };
     let (initial, last) = (list(|c| c.paper.initial), list(|c| c.paper.last));

@@ -26,13 +26,10 @@ pub struct MonotoneAscent {
     pub stationarity: f64,
     /// Stop when the model promises less than this.
     pub least_gain: f64,
-    /// New starts when a climb ends open, or from an open start below [`WORTH`]: around where it
-    /// began, ever farther.
+    /// New starts when a climb ends open, or from an open start below [`Quality::stable_above`]:
+    /// around where it began, ever farther.
     pub restarts: usize,
 }
-
-/// Quality below which an ascent from an open start tries others: what the paper calls unstable.
-pub const WORTH: f64 = 0.01;
 
 impl Default for MonotoneAscent {
     /// Enough steps for household objects: some 80 qualities an ascent.
@@ -149,14 +146,12 @@ impl MonotoneAscent {
         let from = start.to_vec();
         let mut best = self.climb_once(surface, from, quality, constraints, enough, &mut trace)?;
         for k in 0..self.restarts {
-            let started_closed = best.start_quality > 0.0;
-            if best.margin
-                > if started_closed {
-                    0.0
-                } else {
-                    WORTH.min(enough)
-                }
-            {
+            let wanted = if best.start_quality > 0.0 {
+                0.0
+            } else {
+                quality.stable_above().min(enough)
+            };
+            if best.margin > wanted {
                 break;
             }
             let Some(from) = self.probe(surface, start, k, quality, constraints)? else {

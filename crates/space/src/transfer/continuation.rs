@@ -5,7 +5,7 @@ use shape::RadialField;
 use sph::Direction;
 use sph::direction::angle;
 
-use super::{StillOpen, Transfer, TransferError, Transferred, parameter, stations};
+use super::{StillOpen, Transfer, TransferError, Transferred, parameter};
 use crate::ascent::{Ascent, AscentError, MonotoneAscent, Step};
 use crate::constraints::{ConstraintError, Constraints};
 use crate::objective::Objective;
@@ -108,78 +108,78 @@ impl Continuation {
         }
     }
 
-    /// The shapes γ(k/n), k = 0 … n; shared by all grasps of a pair.
-    pub fn stations(&self, transfer: &Transfer) -> Result<Vec<RadialField>, TransferError> {
-        stations(transfer, self.intervals)
-    }
-
-    /// Carries one grasp over `stations`; `trace` sees (t, state) of the first continuation.
+    /// Carries one grasp from the source to the target.
+    ///
+    /// # Errors
+    /// As [`Continuation::carry_traced`].
     pub fn carry(
         &self,
         transfer: &Transfer,
-        stations: &[RadialField],
-        contacts: &[Direction],
-        trace: impl FnMut(f64, &Step),
+        directions: &[Direction],
     ) -> Result<Transferred, TransferError> {
-        let quality_on = |station: &RadialField| transfer.objective(station);
-        self.carry_by(transfer, stations, contacts, quality_on, trace)
+        self.carry_traced(transfer, directions, &Constraints::default(), |_, _| {})
     }
 
-    /// The same within hard limits, kept on every station and by everything that recovery tries.
+    /// The same within hard limits, kept on every station and by everything that recovery tries;
+    /// `trace` sees (t, state) of the first continuation.
     ///
-    /// The start is first moved inside them on the source, and its quality is that of the moved one. A
-    /// station on which nothing near keeps them is passed without a climb; where that is so on the
-    /// target there is an error. [`Constraints::closed_under`] is resolved anew on every station, but
-    /// keeps its torque length.
-    pub fn carry_within(
+    /// The start is first moved inside the limits on the source, and its quality is that of the moved
+    /// one. A station on which nothing near keeps them is passed without a climb.
+    /// [`Constraints::closed_under`] is resolved anew on every station, but keeps its torque length.
+    ///
+    /// # Errors
+    /// The shapes cannot be combined, a quality cannot be computed, or nothing on the target keeps the
+    /// limits.
+    pub fn carry_traced(
         &self,
         transfer: &Transfer,
-        stations: &[RadialField],
-        contacts: &[Direction],
+        directions: &[Direction],
         constraints: &Constraints,
         trace: impl FnMut(f64, &Step),
     ) -> Result<Transferred, TransferError> {
-        let quality_on = |station: &RadialField| transfer.objective(station);
-        self.carry_inside(transfer, stations, contacts, constraints, quality_on, trace)
+        let quality_on = |t: f64, station: &RadialField| transfer.objective(t, station);
+        self.carry_inside(transfer, directions, constraints, quality_on, trace)
     }
 
-    /// [`Continuation::carry`] for any quality; `quality_on` prepares it on a station.
+    /// [`Continuation::carry`] for any quality; `quality_on` prepares it on the shape γ(t).
     ///
     /// The convention of `transfer` is not used.
+    ///
+    /// # Errors
+    /// The shapes cannot be combined, or a quality cannot be computed.
     pub fn carry_by<Q: Quality<RadialField>>(
         &self,
         transfer: &Transfer,
-        stations: &[RadialField],
-        contacts: &[Direction],
-        quality_on: impl FnMut(&RadialField) -> Q,
+        directions: &[Direction],
+        quality_on: impl FnMut(f64, &RadialField) -> Q,
         trace: impl FnMut(f64, &Step),
     ) -> Result<Transferred, TransferError> {
         let free = Constraints::default();
-        self.carry_inside(transfer, stations, contacts, &free, quality_on, trace)
+        self.carry_inside(transfer, directions, &free, quality_on, trace)
     }
 
     fn carry_inside<Q: Quality<RadialField>>(
         &self,
         transfer: &Transfer,
-        stations: &[RadialField],
         contacts: &[Direction],
         constraints: &Constraints,
-        quality_on: impl FnMut(&RadialField) -> Q,
+        quality_on: impl FnMut(f64, &RadialField) -> Q,
         mut trace: impl FnMut(f64, &Step),
     ) -> Result<Transferred, TransferError> {
         constraints.validate()?;
+        let stations = transfer.stations(self.intervals)?;
         let mut carrier = Carrier {
             constraints,
             kept_out: None,
             scheme: self,
             transfer,
-            target: stations.last().unwrap_or(transfer.to),
+            target: stations.last().unwrap_or(transfer.target()),
             quality_on,
             evaluations: 0,
             climbs: 0,
             lost_at: None,
         };
-        let (start_quality, mut best) = carrier.follow(stations, contacts, &mut trace)?;
+        let (start_quality, mut best) = carrier.follow(&stations, contacts, &mut trace)?;
         carrier.keep_better(&mut best, contacts)?;
         if let Some(recovery) = &self.recovery {
             let wanted = recovery.below * start_quality.max(f64::MIN_POSITIVE);
@@ -247,7 +247,7 @@ struct Standing {
     ascent: Ascent,
 }
 
-impl<Q: Quality<RadialField>, F: FnMut(&RadialField) -> Q> Carrier<'_, F> {
+impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
     /// Walks over the stations; the quality at the start and the end.
     fn follow(
         &mut self,
@@ -289,7 +289,7 @@ impl<Q: Quality<RadialField>, F: FnMut(&RadialField) -> Q> Carrier<'_, F> {
         let kept_out = there.margin == f64::NEG_INFINITY;
         if depth < splitting.depth && !kept_out && (lost || farthest > splitting.longest_move) {
             let middle = 0.5 * (here.t + t);
-            let halfway = RadialField::deformation(self.transfer.from, self.transfer.to, middle)?;
+            let halfway = self.transfer.station(middle)?;
             let here = self.advance(here, middle, &halfway, depth + 1, trace)?;
             return self.advance(here, t, station, splitting.depth, trace);
         }
@@ -325,7 +325,7 @@ impl<Q: Quality<RadialField>, F: FnMut(&RadialField) -> Q> Carrier<'_, F> {
         contacts: &[Direction],
         best: &mut Ascent,
     ) -> Result<(), TransferError> {
-        let mut quality = (self.quality_on)(self.target);
+        let mut quality = (self.quality_on)(1.0, self.target);
         let mut starts = Vec::with_capacity(recovery.probes);
         for k in 0..recovery.probes {
             let middle = if k % 3 == 2 { &best.contacts } else { contacts };
@@ -350,7 +350,7 @@ impl<Q: Quality<RadialField>, F: FnMut(&RadialField) -> Q> Carrier<'_, F> {
         contacts: &[Direction],
         best: &mut Ascent,
     ) -> Result<(), TransferError> {
-        let others = stations(self.transfer, recovery.intervals)?;
+        let others = self.transfer.stations(recovery.intervals)?;
         let (_, end) = self.follow(&others, contacts, &mut |_, _| {})?;
         if end.margin > best.margin {
             *best = end;
@@ -364,7 +364,7 @@ impl<Q: Quality<RadialField>, F: FnMut(&RadialField) -> Q> Carrier<'_, F> {
             restarts: LAST_RESTARTS,
             ..self.scheme.at_end
         };
-        let end = self.climb_by(&patient, self.target, contacts, &mut |_| {})?;
+        let end = self.climb_by(&patient, 1.0, self.target, contacts, &mut |_| {})?;
         self.climbs += 1 + LAST_RESTARTS;
         if end.margin > best.margin {
             *best = end;
@@ -385,19 +385,20 @@ impl<Q: Quality<RadialField>, F: FnMut(&RadialField) -> Q> Carrier<'_, F> {
             self.climbs += 1;
             self.scheme.at_end
         };
-        self.climb_by(&settings, station, from, &mut |step| trace(t, step))
+        self.climb_by(&settings, t, station, from, &mut |step| trace(t, step))
     }
 
     /// A climb within the limits; from where there are none it ends at once, worse than anything.
     fn climb_by(
         &mut self,
         settings: &MonotoneAscent,
+        t: f64,
         station: &RadialField,
         from: &[Direction],
         trace: &mut impl FnMut(&Step),
     ) -> Result<Ascent, QualityError> {
-        let mut quality = (self.quality_on)(station);
-        let limits = self.constraints_on(station);
+        let mut quality = (self.quality_on)(t, station);
+        let limits = self.constraints_on(t, station);
         let ascent = match settings.climb_within(station, from, &mut quality, &limits, trace) {
             Ok(ascent) => ascent,
             Err(AscentError::Quality(error)) => return Err(error),
@@ -418,11 +419,11 @@ impl<Q: Quality<RadialField>, F: FnMut(&RadialField) -> Q> Carrier<'_, F> {
     }
 
     /// The limits, with the second objective on a station.
-    fn constraints_on(&self, station: &RadialField) -> Constraints {
-        let origin = &self.transfer.object_origin;
+    fn constraints_on(&self, t: f64, station: &RadialField) -> Constraints {
+        let origin = self.transfer.origin(t);
         let second = self.constraints.closed_under.as_ref();
         Constraints {
-            closed_under: second.map(|o| Objective::new(o.convention(), station, origin)),
+            closed_under: second.map(|o| Objective::new(o.convention(), station, &origin)),
             ..self.constraints.clone()
         }
     }

@@ -1,6 +1,6 @@
 //! Ascents within limits, on M^sph, under rotation, and of other qualities.
 
-use crate::common::{closed_start, lumpy, paper};
+use crate::common::{between, closed_start, lumpy, paper};
 use grasp::{Convention, Edges};
 use nalgebra::{Point3, Rotation3, Vector3};
 use rand_chacha::ChaCha8Rng;
@@ -9,7 +9,6 @@ use shape::{RadialField, RadialShape, SphericalShape, Surface};
 use space::point::contacts_on;
 use space::quality::{LinearPieces, Quality};
 use space::sample::{ContactSampling, perturbed_spherical};
-use space::transfer::{Matrix, Transfer};
 use space::{
     AscentError, ByDifferences, Cap, ConstraintError, Constraints, Continuation, MonotoneAscent,
     Objective,
@@ -240,17 +239,9 @@ fn a_converged_grasp_is_stationary_and_stays() {
             .unwrap();
         assert_eq!(slopes.last(), Some(&ascent.stationarity));
         assert!(ascent.stationarity <= 0.2 * slopes[0], "{slopes:?}");
-        let transfer = Transfer {
-            from: &field,
-            to: &field,
-            convention: &convention,
-            object_origin: Point3::origin(),
-        };
+        let transfer = between(&field, &field, &convention);
         let scheme = Continuation::default();
-        let stations = scheme.stations(&transfer).unwrap();
-        let carried = scheme
-            .carry(&transfer, &stations, &ascent.contacts, |_, _| {})
-            .unwrap();
+        let carried = scheme.carry(&transfer, &ascent.contacts).unwrap();
         assert!(carried.quality >= ascent.quality - 1e-9);
         assert!(carried.quality <= ascent.quality + 1e-9);
         for (p, q) in ascent.contacts.iter().zip(&carried.contacts) {
@@ -264,27 +255,20 @@ fn a_converged_grasp_is_stationary_and_stays() {
 fn any_function_is_carried() {
     let (from, to) = [lumpy(3), lumpy(53)].map(RadialField::new).into();
     let convention = paper();
-    let transfer = Transfer {
-        from: &from,
-        to: &to,
-        convention: &convention,
-        object_origin: Point3::origin(),
-    };
+    let transfer = between(&from, &to, &convention);
     // Smooth, positive, largest where the contacts' normals cancel.
     let balance = |surface: &RadialField, p: &[Direction]| {
         let sum: Vector3<f64> = p.iter().map(|p| surface.contact(p).1.into_inner()).sum();
         3.0 - sum.norm_squared() / 3.0
     };
     let scheme = Continuation::default();
-    let stations = scheme.stations(&transfer).unwrap();
     let start = closed_start(&from, 3);
     let mut trace = Vec::new();
     let carried = scheme
         .carry_by(
             &transfer,
-            &stations,
             &start,
-            |_| ByDifferences::new(balance, 1e-5),
+            |_, _| ByDifferences::new(balance, 1e-5),
             |t, step| trace.push((t, step.quality)),
         )
         .unwrap();
@@ -307,12 +291,7 @@ fn any_function_is_carried() {
 fn transfers_keep_limits_on_the_way_and_in_recovery() {
     let (from, to) = [lumpy(3), lumpy(53)].map(RadialField::new).into();
     let convention = paper();
-    let transfer = Transfer {
-        from: &from,
-        to: &to,
-        convention: &convention,
-        object_origin: Point3::origin(),
-    };
+    let transfer = between(&from, &to, &convention);
     let start = closed_start(&from, 3);
     let limits = |reach: f64| Constraints {
         least_separation: Some(0.025),
@@ -328,7 +307,6 @@ fn transfers_keep_limits_on_the_way_and_in_recovery() {
         ..paper()
     };
     for scheme in [Continuation::default(), Continuation::thorough()] {
-        let stations = scheme.stations(&transfer).unwrap();
         let tight = limits(0.078);
         let start = MonotoneAscent::default()
             .climb_within(
@@ -341,7 +319,7 @@ fn transfers_keep_limits_on_the_way_and_in_recovery() {
             .unwrap()
             .contacts;
         let carry = |limits: &Constraints, trace: &mut dyn FnMut(f64, &space::Step)| {
-            scheme.carry_within(&transfer, &stations, &start, limits, trace)
+            scheme.carry_traced(&transfer, &start, limits, trace)
         };
         let mut seen = [0, 0];
         let arrived = carry(&tight, &mut |t, step| {
@@ -383,21 +361,13 @@ fn an_open_end_says_why() {
         friction: 1e-6,
         ..paper()
     };
-    let transfer = Transfer {
-        from: &from,
-        to: &to,
-        convention: &convention,
-        object_origin: Point3::origin(),
-    };
+    let transfer = between(&from, &to, &convention);
     let p = Direction::new_normalize(Vector3::new(1.0, 0.3, 0.2));
     let start: Vec<Direction> = [0.0, 0.1, 0.2]
         .map(|y| retract(&p, &Vector3::new(0.0, y, -y)))
         .to_vec();
     let scheme = Continuation::default();
-    let stations = scheme.stations(&transfer).unwrap();
-    let carried = scheme
-        .carry(&transfer, &stations, &start, |_, _| {})
-        .unwrap();
+    let carried = scheme.carry(&transfer, &start).unwrap();
     if carried.quality <= 0.0 {
         let reason = carried.open.unwrap();
         assert!(reason.distance.unwrap() >= 0.0 && reason.climbs > 1);
@@ -405,38 +375,4 @@ fn an_open_end_says_why() {
     } else {
         assert!(carried.open.is_none() && carried.quality <= 1e-6);
     }
-}
-
-#[test]
-fn jobs_of_a_matrix_stand_alone() {
-    let surfaces: Vec<RadialField> = [1, 2].map(|s| RadialField::new(lumpy(s))).to_vec();
-    let grasps: Vec<Vec<Vec<Direction>>> =
-        surfaces.iter().map(|s| vec![closed_start(s, 5)]).collect();
-    let (convention, scheme) = (paper(), Continuation::default());
-    let matrix = Matrix {
-        surfaces: &surfaces,
-        origins: &[Point3::origin(); 2],
-        grasps: &grasps,
-        convention: &convention,
-        scheme: &scheme,
-    };
-    let jobs = matrix.jobs();
-    assert_eq!(jobs.len(), 2);
-    let forwards: Vec<_> = jobs.iter().map(|j| matrix.carry(j).unwrap()).collect();
-    let backwards: Vec<_> = jobs
-        .iter()
-        .rev()
-        .map(|j| matrix.carry(j).unwrap())
-        .collect();
-    assert_eq!(forwards[0], backwards[1]);
-    assert_eq!(forwards[1], backwards[0]);
-    let missing = space::transfer::Job {
-        from: 0,
-        to: 7,
-        grasp: 0,
-    };
-    assert!(matches!(
-        matrix.carry(&missing),
-        Err(space::TransferError::Job { .. })
-    ));
 }

@@ -4,5 +4,6 @@ mod allocation;
 mod ascent;
 mod common;
 mod monotone;
+mod pairs;
 mod paper_schemes;
 mod space;

@@ -1,6 +1,6 @@
 //! Our ascent: monotone, pole-free, better than the fixed step.
 
-use crate::common::{closed_start, lumpy, paper};
+use crate::common::{between, closed_start, lumpy, paper};
 use grasp::{Convention, Edges, FrameRule, Gradient};
 use nalgebra::{Point3, Vector3};
 use proptest::prelude::*;
@@ -137,18 +137,10 @@ fn our_transfer_is_never_below_the_naive_one() {
     let convention = paper();
     for seed in 0..6 {
         let (from, to) = [lumpy(seed), lumpy(seed + 50)].map(RadialField::new).into();
-        let transfer = space::transfer::Transfer {
-            from: &from,
-            to: &to,
-            convention: &convention,
-            object_origin: Point3::origin(),
-        };
+        let transfer = between(&from, &to, &convention);
         let start = closed_start(from.shape(), seed);
         let scheme = space::Continuation::default();
-        let stations = scheme.stations(&transfer).unwrap();
-        let arrived = scheme
-            .carry(&transfer, &stations, &start, |_, _| {})
-            .unwrap();
+        let arrived = scheme.carry(&transfer, &start).unwrap();
         let naive = transfer.naive(&start).unwrap();
         assert!(arrived.quality >= naive.quality);
         assert!(arrived.quality > 0.1, "seed {seed}: {}", arrived.quality);

@@ -3,10 +3,11 @@
 use grasp::Convention;
 use nalgebra::{Point3, Vector3};
 use shape::{RadialField, RadialShape};
-use space::transfer::Transfer;
 use space::{Objective, PaperAscent, PaperTransfer};
 use sph::direction::{angle, retract};
 use sph::{Coefficients, Direction, SphericalCoords};
+
+use crate::common::between;
 
 const ASCENT: PaperAscent = PaperAscent {
     steps: 100,
@@ -90,12 +91,7 @@ fn an_open_grasp_stays_where_it_is() {
 fn a_transfer_visits_every_station_and_ends_on_the_target() {
     let (from, to) = [egg(0.0), egg(0.025)].map(RadialField::new).into();
     let convention = paper();
-    let transfer = Transfer {
-        from: &from,
-        to: &to,
-        convention: &convention,
-        object_origin: Point3::origin(),
-    };
+    let transfer = between(&from, &to, &convention);
     let scheme = PaperTransfer {
         intervals: 10,
         ascent: PaperAscent {
@@ -103,7 +99,7 @@ fn a_transfer_visits_every_station_and_ends_on_the_target() {
             ..ASCENT
         },
     };
-    let stations = scheme.stations(&transfer).unwrap();
+    let stations = transfer.stations(scheme.intervals).unwrap();
     assert_eq!(stations.len(), 11);
     assert!(
         stations[10]
@@ -115,7 +111,7 @@ fn a_transfer_visits_every_station_and_ends_on_the_target() {
     let start = around_the_waist();
     let mut parameters = Vec::new();
     let arrived = scheme
-        .carry(&transfer, &stations, &start, |t, _| parameters.push(t))
+        .carry_traced(&transfer, &start, |t, _| parameters.push(t))
         .unwrap();
     parameters.dedup();
     assert_eq!(parameters.len(), 11);

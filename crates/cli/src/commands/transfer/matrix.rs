@@ -14,11 +14,11 @@ use record::envelope::checksum;
 use serde::Serialize;
 use serde_json::json;
 use space::Objective;
-use space::transfer::{Transfer, run_jobs};
+use space::transfer::run_jobs;
 
-use super::{Origin, carry, failed, prepare, scheme_name};
+use super::{Origin, between, carry, failed, prepare, scheme_name};
 use crate::args::{Common, TransferOptions};
-use crate::delivery::{UNSTABLE_BELOW, move_all};
+use crate::delivery::move_all;
 use crate::failure::Failure;
 use crate::placed::{Object, Placed};
 use crate::{input, output};
@@ -46,6 +46,8 @@ struct Source {
 struct Pair<'a> {
     from: &'a Source,
     to: &'a Side,
+    /// How quality is measured.
+    rule: &'a Convention,
     file: PathBuf,
     /// Of everything that decides the result.
     key: String,
@@ -93,7 +95,7 @@ pub(super) fn run(options: &TransferOptions, common: &Common) -> Result<(), Fail
     let kept = lines.iter().flatten().count();
     let bar = output::progress(common.quiet, pairs.len(), "transferring pairs");
     bar.set_position(kept as u64);
-    let one = |pair: &Pair| pair.transfer(options, &convention);
+    let one = |pair: &Pair| pair.transfer(options);
     let ended = run_jobs(&pairs, &mut lines, one, |_, _| {
         bar.inc(1);
         ControlFlow::Continue(())
@@ -152,7 +154,7 @@ fn pairs<'a>(
     targets: &'a [Side],
     folder: &Path,
     options: &TransferOptions,
-    convention: &Convention,
+    convention: &'a Convention,
 ) -> Vec<Pair<'a>> {
     let how = format!(
         "{} {} {} {:?} {convention:?}",
@@ -169,6 +171,7 @@ fn pairs<'a>(
         .map(|(from, to)| Pair {
             from,
             to,
+            rule: convention,
             file: folder.join(format!("{}-to-{}.json", from.side.stem, to.stem)),
             key: format!(
                 "{:016x}{:016x}{:016x}{how:016x}",
@@ -189,20 +192,12 @@ impl Pair<'_> {
         Some(self.line(&GraspsFile::from_json(&bytes).ok()?))
     }
 
-    fn transfer(
-        &self,
-        options: &TransferOptions,
-        convention: &Convention,
-    ) -> Result<PairLine, Failure> {
+    fn transfer(&self, options: &TransferOptions) -> Result<PairLine, Failure> {
+        let convention = self.rule;
         let (from, to) = (&self.from.side.object, &self.to.object);
-        let transfer = Transfer {
-            from: &from.surface,
-            to: &to.surface,
-            convention,
-            object_origin: to.origin(),
-        };
+        let transfer = between(from, to, convention);
         let objective = Objective::new(convention, &to.surface, &to.origin());
-        let scheme = prepare(options, &transfer, &objective)?;
+        let scheme = prepare(options, &objective)?;
         let origin = Origin::new(from, to);
         let moved = move_all(&self.from.grasps, |i, placed| {
             carry(options, &scheme, &transfer, to, placed, &origin)
@@ -230,7 +225,7 @@ impl Pair<'_> {
             to: self.to.stem.clone(),
             file: self.file.display().to_string(),
             grasps: file.grasps.len(),
-            unstable: qualities().filter(|q| *q < UNSTABLE_BELOW).count(),
+            unstable: qualities().filter(|q| !self.rule.is_stable(*q)).count(),
             mean_start: starts.sum::<f64>() / count,
             mean_final: qualities().sum::<f64>() / count,
             best: qualities().fold(0.0, f64::max),
@@ -260,7 +255,7 @@ fn say(
     } else {
         for line in lines {
             output::say(format!(
-                "{:24} {:24} {:4} grasps  {:.4} → {:.4}, best {:.4}, {} below 0.01",
+                "{:24} {:24} {:4} grasps  {:.4} → {:.4}, best {:.4}, {} not stable",
                 line.from,
                 line.to,
                 line.grasps,
@@ -271,7 +266,7 @@ fn say(
             ));
         }
         output::say(format!(
-            "{} pairs ({kept} done before), {grasps} grasps: mean {mean_start:.4} → {mean_final:.4}, {unstable} below 0.01; {seconds:.2} s\n{}",
+            "{} pairs ({kept} done before), {grasps} grasps: mean {mean_start:.4} → {mean_final:.4}, {unstable} not stable; {seconds:.2} s\n{}",
             lines.len(),
             folder.display()
         ));

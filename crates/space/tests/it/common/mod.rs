@@ -4,9 +4,9 @@ use grasp::Convention;
 use nalgebra::Point3;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use shape::{RadialShape, Surface};
-use space::Objective;
+use shape::{RadialField, RadialShape, Surface};
 use space::sample::{perturbed, uniform_direction};
+use space::{Objective, Transfer, TransferEnd};
 use sph::{Coefficients, Direction};
 
 /// A ball with waves.
@@ -35,4 +35,17 @@ pub(crate) fn closed_start(surface: &impl Surface, seed: u64) -> Vec<Direction> 
             return triple;
         }
     }
+}
+
+/// A pair of objects, each with the mean of its cloud at the origin of its cloud's frame.
+pub(crate) fn between<'a>(
+    from: &'a RadialField,
+    to: &'a RadialField,
+    convention: &'a Convention,
+) -> Transfer<'a> {
+    let end = |surface| TransferEnd {
+        surface,
+        object_origin: Point3::origin(),
+    };
+    Transfer::new(end(from), end(to), convention)
 }

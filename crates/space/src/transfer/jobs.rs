@@ -3,13 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use grasp::Convention;
-use nalgebra::Point3;
 use rayon::prelude::*;
-use shape::RadialField;
-use sph::Direction;
-
-use super::{Continuation, Transfer, TransferError, Transferred};
 
 /// One grasp to carry from one object to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -32,48 +26,6 @@ pub fn all_pairs(grasps: &[usize]) -> Vec<Job> {
         }
     }
     jobs
-}
-
-/// What a matrix of transfers is made of.
-#[derive(Clone, Copy, Debug)]
-pub struct Matrix<'a> {
-    /// The objects.
-    pub surfaces: &'a [RadialField],
-    /// The origin of every object's own frame in its centred frame.
-    pub origins: &'a [Point3<f64>],
-    /// The grasps of every object.
-    pub grasps: &'a [Vec<Vec<Direction>>],
-    /// How quality is measured.
-    pub convention: &'a Convention,
-    /// How grasps are carried.
-    pub scheme: &'a Continuation,
-}
-
-impl Matrix<'_> {
-    /// All jobs of the matrix.
-    pub fn jobs(&self) -> Vec<Job> {
-        all_pairs(&self.grasps.iter().map(Vec::len).collect::<Vec<_>>())
-    }
-
-    /// Carries one grasp. Depends on nothing but the job: any thread may do it, in any order.
-    ///
-    /// Errors: [`TransferError::Job`] when an index is out of range.
-    pub fn carry(&self, job: &Job) -> Result<Transferred, TransferError> {
-        let outside = || TransferError::Job { job: *job };
-        let grasp = self
-            .grasps
-            .get(job.from)
-            .and_then(|grasps| grasps.get(job.grasp))
-            .ok_or_else(outside)?;
-        let transfer = Transfer {
-            from: self.surfaces.get(job.from).ok_or_else(outside)?,
-            to: self.surfaces.get(job.to).ok_or_else(outside)?,
-            convention: self.convention,
-            object_origin: *self.origins.get(job.to).ok_or_else(outside)?,
-        };
-        let stations = self.scheme.stations(&transfer)?;
-        self.scheme.carry(&transfer, &stations, grasp, |_, _| {})
-    }
 }
 
 /// How far a run is.
