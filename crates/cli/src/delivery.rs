@@ -11,8 +11,8 @@ use space::Objective;
 
 use crate::args::{Common, MoveOptions};
 use crate::failure::Failure;
-use crate::output;
 use crate::placed::{Moved, Object, Placed, TraceStep};
+use crate::{input, output};
 
 /// Version of the layout of traces.
 const TRACE_VERSION: u32 = 1;
@@ -57,6 +57,8 @@ impl Movement<'_> {
         common: &Common,
         one: impl Fn(usize, &Placed) -> Result<Moved, Failure> + Sync,
     ) -> Result<(), Failure> {
+        let results: Vec<&PathBuf> = options.output.iter().chain(&options.trace).collect();
+        run::check_results(&results, &input::files_read())?;
         let bar = output::progress(common.quiet, grasps.len(), self.doing);
         let moved = move_all(grasps, |i, placed| {
             bar.inc(1);

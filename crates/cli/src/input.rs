@@ -1,11 +1,14 @@
 //! Files of the user: clouds, shapes, grasps.
 
-use std::path::Path;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use grasp::{Convention, Edges};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use record::{EnvelopeError, GraspsFile, ShapeRecord};
+use run::npy::Table;
 use shape::io::{Loaded, Warning};
 use shape::{Fit, FitError, FitSettings, PointCloud};
 
@@ -16,9 +19,31 @@ use crate::output::warn;
 /// Share of unseen directions from which on the user is told.
 const GUESSED: f64 = 0.1;
 
+/// Every file that this run has read, so that none of them is overwritten.
+static READ: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
 /// The bytes of a file.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
-    std::fs::read(path).map_err(|e| Failure::input(path, e))
+    bytes(path).map_err(|e| Failure::input(path, e))
+}
+
+/// The bytes of a file, with the system's own error.
+pub(crate) fn bytes(path: &Path) -> std::io::Result<Vec<u8>> {
+    let bytes = std::fs::read(path)?;
+    let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
+    read.insert(path.to_owned());
+    Ok(bytes)
+}
+
+/// The files that have been read so far.
+pub(crate) fn files_read() -> Vec<PathBuf> {
+    let read = READ.lock().unwrap_or_else(PoisonError::into_inner);
+    read.iter().cloned().collect()
+}
+
+/// A table of numbers with this many columns from a `.npy` file.
+pub(crate) fn table(path: &Path, columns: usize) -> Result<Table, Failure> {
+    Table::from_npy_with_columns(&read(path)?, columns).map_err(|e| Failure::input(path, e))
 }
 
 /// A readable name for what a file holds.

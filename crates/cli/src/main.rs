@@ -8,7 +8,6 @@ mod hands;
 mod input;
 mod limits;
 mod mesh_folders;
-mod numpy;
 mod output;
 mod placed;
 mod plan;

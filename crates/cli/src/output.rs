@@ -4,9 +4,12 @@ use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use run::WriteError;
+use run::npy::Table;
 use serde::Serialize;
 
 use crate::failure::Failure;
+use crate::input;
 
 /// A line of the result.
 ///
@@ -42,6 +45,14 @@ pub(crate) fn encode(value: &impl Serialize) -> Result<Vec<u8>, Failure> {
         .map_err(|e| Failure::other(format!("cannot encode the result as JSON: {e}")))
 }
 
+/// The bytes of a `.npy` file of whole rows.
+pub(crate) fn npy(columns: usize, values: Vec<f64>) -> Result<Vec<u8>, Failure> {
+    let count = values.len();
+    Table::new(columns, values)
+        .map(|table| table.to_npy())
+        .ok_or_else(|| Failure::other(format!("{count} numbers do not fill rows of {columns}")))
+}
+
 /// Something the user should know, that stops nothing.
 pub(crate) fn warn(line: impl AsRef<str>) {
     tell(&format!("warning: {}", line.as_ref()));
@@ -65,25 +76,17 @@ pub(crate) fn progress(quiet: bool, total: usize, what: &str) -> ProgressBar {
     bar
 }
 
-/// Writes a whole file: to a temporary name beside it, then renamed, so that no half file is left.
+/// Writes a whole result; what the program has read is never overwritten.
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let fail = |e: std::io::Error| Failure::other(format!("cannot write {}: {e}", path.display()));
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
-    if let Some(folder) = folder {
-        std::fs::create_dir_all(folder).map_err(fail)?;
+    Ok(run::write(path, bytes, &input::files_read())?)
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        if error.is_usage() {
+            Self::usage(error.to_string())
+        } else {
+            Self::other(error.to_string())
+        }
     }
-    let name = path
-        .file_name()
-        .ok_or_else(|| Failure::usage(format!("{} names no file", path.display())))?;
-    let temporary = path.with_file_name(format!(
-        ".{}.{}.part",
-        name.to_string_lossy(),
-        std::process::id()
-    ));
-    std::fs::write(&temporary, bytes).map_err(fail)?;
-    std::fs::rename(&temporary, path).map_err(|e| {
-        // The error that matters is the rename's.
-        let _ = std::fs::remove_file(&temporary);
-        fail(e)
-    })
 }

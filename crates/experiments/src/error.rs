@@ -78,13 +78,14 @@ pub enum ExperimentError {
     #[error(transparent)]
     Transfer(#[from] space::TransferError),
     /// A result could not be written.
-    #[error("cannot write {path}: {reason}")]
-    Output {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system says.
-        reason: std::io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] run::WriteError),
+    /// Finished jobs could not be kept.
+    #[error(transparent)]
+    Ledger(#[from] run::ledger::LedgerError),
+    /// The file of the running program could not be read.
+    #[error("cannot read this program, whose digest marks unfinished results: {0}")]
+    Program(std::io::Error),
     /// A page was refused.
     #[error(transparent)]
     Report(#[from] report::ReportError),
@@ -110,7 +111,9 @@ impl ExperimentError {
             | Self::UnknownObject { .. }
             | Self::TooFewObjects { .. }
             | Self::Cloud(_) => 3,
-            Self::Output { .. }
+            Self::Write(_)
+            | Self::Ledger(_)
+            | Self::Program(_)
             | Self::Report(_)
             | Self::Record(_)
             | Self::Json(_)

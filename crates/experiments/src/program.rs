@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use moduli::records::convention_record;
 use report::{Page, Section};
+use run::WriteError;
 use serde_json::{Value, json};
 
 use crate::args::Args;
@@ -90,9 +91,9 @@ pub fn execute(
     let bytes = serde_json::to_vec_pretty(&value)?;
     let path = write(&args.out, &format!("{name}.json"), &bytes)?;
     if unfinished.exists() {
-        std::fs::remove_dir_all(&unfinished).map_err(|reason| ExperimentError::Output {
+        std::fs::remove_dir_all(&unfinished).map_err(|source| WriteError::Io {
             path: unfinished,
-            reason,
+            source,
         })?;
     }
     Ok(format!(

@@ -8,7 +8,10 @@ use sph::Direction;
 
 use crate::args::{Common, EvalOptions};
 use crate::failure::Failure;
-use crate::{input, numpy, output};
+use crate::{input, output};
+
+/// Radius, its gradient (3) and the outward normal (3).
+const COLUMNS: usize = 7;
 
 #[derive(Serialize)]
 struct EvalLine {
@@ -20,8 +23,8 @@ struct EvalLine {
 pub(crate) fn run(options: &EvalOptions, common: &Common) -> Result<(), Failure> {
     let shape = stored_shape(&input::shape_record(&options.shape)?)
         .map_err(|e| Failure::input(&options.shape, e))?;
-    let table = numpy::read(&options.directions, 3)?;
-    let mut values = Vec::with_capacity(table.values.len() / 3 * 7);
+    let table = input::table(&options.directions, 3)?;
+    let mut values = Vec::with_capacity(table.row_count() * COLUMNS);
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for (row, v) in table.rows().enumerate() {
         let v = Vector3::new(v[0], v[1], v[2]);
@@ -41,9 +44,9 @@ pub(crate) fn run(options: &EvalOptions, common: &Common) -> Result<(), Failure>
         low = low.min(radius);
         high = high.max(radius);
     }
-    output::write_file(&options.output, &numpy::encode(7, &values)?)?;
+    output::write_file(&options.output, &output::npy(COLUMNS, values)?)?;
     let line = EvalLine {
-        directions: values.len() / 7,
+        directions: table.row_count(),
         radius_min_m: low,
         radius_max_m: high,
     };

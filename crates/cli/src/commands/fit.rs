@@ -1,5 +1,6 @@
 //! `moduli fit`: clouds to certified shapes.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -30,6 +31,7 @@ struct FitLine {
 }
 
 pub(crate) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> {
+    refuse_shared_names(options)?;
     if !common.json {
         output::say(format!(
             "{:28} {:>7} {:>3} {:>9} {:>8} {:>8} {:>17} {:>9} {:>7}",
@@ -97,6 +99,27 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Fail
         centre_m: fit.centre_in_cloud.into(),
         seconds,
     })
+}
+
+/// Two clouds whose shapes would have one name, and a shape that would replace a cloud.
+fn refuse_shared_names(options: &FitOptions) -> Result<(), Failure> {
+    let mut clouds: BTreeMap<PathBuf, &Path> = BTreeMap::new();
+    for cloud in &options.clouds {
+        let Some(shape) = target(cloud, options) else {
+            return Ok(());
+        };
+        if let Some(other) = clouds.get(&shape) {
+            return Err(Failure::usage(format!(
+                "the shapes of `{}` and `{}` would both be written to `{}`; fit them into two folders",
+                other.display(),
+                cloud.display(),
+                shape.display()
+            )));
+        }
+        clouds.insert(shape, cloud);
+    }
+    let shapes: Vec<&PathBuf> = clouds.keys().collect();
+    Ok(run::check_results(&shapes, &options.clouds)?)
 }
 
 /// The file that a cloud's shape goes to.

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::args::{Common, QualityOptions};
 use crate::failure::Failure;
-use crate::{input, numpy, output};
+use crate::{input, output};
 
 /// c1 c2 c3 n1 n2 n3 z.
 const COLUMNS: usize = 21;
@@ -43,7 +43,7 @@ pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failu
             .zip(&numbers)
             .flat_map(|(e, q)| [*q, e.lower, e.upper])
             .collect();
-        output::write_file(path, &numpy::encode(3, &rows)?)?;
+        output::write_file(path, &output::npy(3, rows)?)?;
     }
     let count = grasps.len() as f64;
     let line = QualityLine {
@@ -96,7 +96,7 @@ fn read_grasps(path: &Path) -> Result<Vec<Grasp>, Failure> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
     let grasps = match extension {
         "npy" => {
-            let table = numpy::read(path, COLUMNS)?;
+            let table = input::table(path, COLUMNS)?;
             table
                 .rows()
                 .enumerate()

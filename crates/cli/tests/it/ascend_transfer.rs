@@ -292,6 +292,16 @@ fn many_transfers_go_on_where_they_were_interrupted() {
         table
     );
     assert_eq!(whole(&[])["kept_pairs"], 2);
+    // A result that somebody has changed is computed again.
+    let text = String::from_utf8(bytes[0].clone()).unwrap();
+    let quality = read(here, "all/egg-to-ball.json")["grasps"][0]["quality"].to_string();
+    std::fs::write(&ball, text.replacen(&quality, "9.9", 1)).unwrap();
+    let third = whole(&[]);
+    assert_eq!(
+        (&third["kept_pairs"], &third["pairs"]),
+        (&1.into(), &first["pairs"])
+    );
+    assert_eq!(std::fs::read(&ball).unwrap(), bytes[0]);
     // What was done under other terms is done again.
     assert_eq!(whole(&["--friction", "0.9"])["kept_pairs"], 0);
     // A pair's file is a grasps.json.

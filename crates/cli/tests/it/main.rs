@@ -4,3 +4,4 @@ mod ascend_transfer;
 mod commands;
 mod common;
 mod hands;
+mod results;

@@ -165,7 +165,7 @@ pub fn measure(
     grasps: &[Vec<HandGrasp>],
 ) -> Result<(Vec<ObjectClimbs>, ThreadSeconds), ExperimentError> {
     let starts = directions(grasps);
-    let key = ledger::key(run, set, &starts, json!(format!("{plan:?}")));
+    let key = ledger::key(run, set, &starts, plan)?;
     let jobs: Vec<(&FittedObject, &[Direction])> = set
         .objects
         .iter()

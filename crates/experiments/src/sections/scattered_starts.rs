@@ -145,7 +145,7 @@ pub fn measure(
     grasps: &[Vec<HandGrasp>],
 ) -> Result<(Vec<Compared>, ThreadSeconds), ExperimentError> {
     let starts = directions(grasps);
-    let key = ledger::key(run, set, &starts, json!(format!("{plan:?}")));
+    let key = ledger::key(run, set, &starts, plan)?;
     let drawn = draw(run, plan, &starts);
     run.say(&format!(
         "{} transfers, {} runs each",

@@ -163,7 +163,7 @@ pub fn measure(
     grasps: &[Vec<HandGrasp>],
 ) -> Result<(Vec<Carried>, ThreadSeconds), ExperimentError> {
     let starts = directions(grasps);
-    let key = ledger::key(run, set, &starts, json!(format!("{plan:?}")));
+    let key = ledger::key(run, set, &starts, plan)?;
     let count = set.objects.len();
     let pairs: Vec<(usize, usize)> = (0..count)
         .flat_map(|i| (0..count).map(move |j| (i, j)))

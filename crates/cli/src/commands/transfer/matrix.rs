@@ -10,7 +10,8 @@ use std::time::Instant;
 use grasp::Convention;
 use rayon::prelude::*;
 use record::GraspsFile;
-use record::envelope::checksum;
+use run::ledger::{is_sealed, seal};
+use run::{Digest, Key};
 use serde::Serialize;
 use serde_json::json;
 use space::Objective;
@@ -28,18 +29,18 @@ const TABLE: &str = "transfers.json";
 /// The key of a pair's file under which the transfer is described.
 const MADE_BY: &str = "transfer";
 
-/// A shape file, its stem and a checksum of its bytes.
+/// A shape file, its stem and the digest of its bytes.
 struct Side {
     stem: String,
     object: Object,
-    checksum: u64,
+    digest: Digest,
 }
 
 struct Source {
     side: Side,
     path: PathBuf,
     grasps: Vec<Placed>,
-    checksum: u64,
+    digest: Digest,
 }
 
 /// One pair of objects and where its grasps go.
@@ -50,7 +51,7 @@ struct Pair<'a> {
     rule: &'a Convention,
     file: PathBuf,
     /// Of everything that decides the result.
-    key: String,
+    key: Key,
 }
 
 /// What a file of a pair says.
@@ -80,17 +81,17 @@ pub(super) fn run(options: &TransferOptions, common: &Common) -> Result<(), Fail
     let convention = input::convention(&options.moved.convention)?;
     let sources = sources(options)?;
     let targets = distinct(&options.to)?;
-    let pairs = pairs(&sources, &targets, folder, options, &convention);
-    let mut files = BTreeSet::new();
-    if let Some(twice) = pairs.iter().find(|pair| !files.insert(&pair.file)) {
-        return Err(Failure::usage(format!(
-            "two pairs of shapes would be written to {}; rename one",
-            twice.file.display()
-        )));
-    }
+    let pairs = pairs(&sources, &targets, folder, options, &convention)?;
     if pairs.is_empty() {
         return Err(Failure::usage("--from and --to name the same shape alone"));
     }
+    let table = folder.join(TABLE);
+    let results: Vec<&PathBuf> = pairs
+        .iter()
+        .map(|pair| &pair.file)
+        .chain([&table])
+        .collect();
+    run::check_results(&results, &input::files_read())?;
     let mut lines: Vec<Option<PairLine>> = pairs.iter().map(|pair| pair.done()).collect();
     let kept = lines.iter().flatten().count();
     let bar = output::progress(common.quiet, pairs.len(), "transferring pairs");
@@ -103,7 +104,7 @@ pub(super) fn run(options: &TransferOptions, common: &Common) -> Result<(), Fail
     bar.finish_and_clear();
     ended.map(|_| ())?;
     let lines: Vec<PairLine> = lines.into_iter().flatten().collect();
-    output::write_file(&folder.join(TABLE), &output::encode(&lines)?)?;
+    output::write_file(&table, &output::encode(&lines)?)?;
     say(&lines, kept, folder, start.elapsed().as_secs_f64(), common)
 }
 
@@ -119,7 +120,7 @@ fn sources(options: &TransferOptions) -> Result<Vec<Source>, Failure> {
     let read = |(side, path): (Side, &PathBuf)| {
         Ok(Source {
             grasps: side.object.grasps(path)?,
-            checksum: checksum(&input::read(path)?),
+            digest: Digest::of(&input::read(path)?),
             path: path.clone(),
             side,
         })
@@ -142,7 +143,7 @@ fn distinct(paths: &[PathBuf]) -> Result<Vec<Side>, Failure> {
         Ok(Side {
             stem: input::stem(path),
             object: Object::read(path)?,
-            checksum: checksum(&input::read(path)?),
+            digest: Digest::of(&input::read(path)?),
         })
     };
     paths.par_iter().map(read).collect()
@@ -155,28 +156,31 @@ fn pairs<'a>(
     folder: &Path,
     options: &TransferOptions,
     convention: &'a Convention,
-) -> Vec<Pair<'a>> {
+) -> Result<Vec<Pair<'a>>, Failure> {
     let how = format!(
-        "{} {} {} {:?} {convention:?}",
-        env!("CARGO_PKG_VERSION"),
+        "{} {} {:?} {convention:?}",
         scheme_name(options),
         options.thorough,
         options.limits
     );
-    let how = checksum(how.as_bytes());
     let all = sources
         .iter()
         .flat_map(|from| targets.iter().map(move |to| (from, to)));
-    all.filter(|(from, to)| from.side.checksum != to.checksum)
-        .map(|(from, to)| Pair {
-            from,
-            to,
-            rule: convention,
-            file: folder.join(format!("{}-to-{}.json", from.side.stem, to.stem)),
-            key: format!(
-                "{:016x}{:016x}{:016x}{how:016x}",
-                from.side.checksum, to.checksum, from.checksum
-            ),
+    all.filter(|(from, to)| from.side.digest != to.digest)
+        .map(|(from, to)| {
+            Ok(Pair {
+                from,
+                to,
+                rule: convention,
+                file: folder.join(format!("{}-to-{}.json", from.side.stem, to.stem)),
+                key: Key::new(&[
+                    ("from", from.side.digest.hex().as_bytes()),
+                    ("to", to.digest.hex().as_bytes()),
+                    ("grasps", from.digest.hex().as_bytes()),
+                    ("how", how.as_bytes()),
+                ])
+                .map_err(|e| Failure::other(format!("cannot read this program: {e}")))?,
+            })
         })
         .collect()
 }
@@ -185,8 +189,8 @@ impl Pair<'_> {
     /// The line of a file that this very transfer has left.
     fn done(&self) -> Option<PairLine> {
         let bytes = std::fs::read(&self.file).ok()?;
-        let value: serde_json::Value = serde_json::from_slice(&bytes).ok()?;
-        if value[MADE_BY]["key"] != self.key.as_str() {
+        let value = serde_json::from_slice(&bytes).ok()?;
+        if !is_sealed(&value, MADE_BY, &self.key) {
             return None;
         }
         Some(self.line(&GraspsFile::from_json(&bytes).ok()?))
@@ -204,16 +208,24 @@ impl Pair<'_> {
                 .map_err(|e| failed(&self.from.path, i, &e))
         })?;
         let file = to.file(&objective, &moved);
-        let mut value = serde_json::to_value(&file)
-            .map_err(|e| Failure::other(format!("cannot encode the result as JSON: {e}")))?;
-        value[MADE_BY] = json!({
-            "from": self.from.side.stem,
-            "to": self.to.stem,
-            "scheme": scheme_name(options),
-            "key": self.key,
-        });
+        let value = self
+            .sealed(&file, scheme_name(options))
+            .map_err(unencodable)?;
         output::write_file(&self.file, &output::encode(&value)?)?;
         Ok(self.line(&file))
+    }
+
+    /// The file with a note on how it was made, by which a later run knows it.
+    fn sealed(
+        &self,
+        file: &GraspsFile,
+        scheme: &str,
+    ) -> serde_json::Result<serde_json::Map<String, serde_json::Value>> {
+        let mut value = serde_json::from_value(serde_json::to_value(file)?)?;
+        let made_by = json!({"from": self.from.side.stem, "to": self.to.stem, "scheme": scheme});
+        serde_json::Map::insert(&mut value, MADE_BY.to_owned(), made_by);
+        seal(&mut value, MADE_BY, &self.key)?;
+        Ok(value)
     }
 
     fn line(&self, file: &GraspsFile) -> PairLine {
@@ -231,6 +243,10 @@ impl Pair<'_> {
             best: qualities().fold(0.0, f64::max),
         }
     }
+}
+
+fn unencodable(error: serde_json::Error) -> Failure {
+    Failure::other(format!("cannot encode the result as JSON: {error}"))
 }
 
 fn say(
