@@ -1,5 +1,4 @@
 //! A warm workspace answers without touching the heap.
-#![allow(unsafe_code, reason = "counting allocations takes a global allocator")]
 
 use crate::common::{anywhere, around, generator, unit};
 use grasp::{
@@ -7,37 +6,10 @@ use grasp::{
     facet_gradient, margin, near_active_facets,
 };
 use nalgebra::Point3;
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-// SAFETY: every call goes on to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.with(|c| c.set(c.get() + 1));
-        // SAFETY: the caller's contract is passed on.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: the caller's contract is passed on.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        COUNT.with(|c| c.set(c.get() + 1));
-        // SAFETY: the caller's contract is passed on.
-        unsafe { System.realloc(pointer, layout, size) }
-    }
-}
+use testkit::{CountingAllocator, allocations};
 
 #[global_allocator]
-static ALLOCATOR: Counting = Counting;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 struct Scratch {
     workspace: Workspace,
@@ -81,13 +53,13 @@ fn no_allocation_after_the_first_pass() {
     };
     for edges in [Edges::Polygon(8), Edges::Round { tolerance: 1e-2 }] {
         pass(&grasps, edges, &mut scratch);
-        let before = COUNT.with(Cell::get);
+        let before = allocations();
         pass(&grasps, edges, &mut scratch);
-        let inside = COUNT.with(Cell::get) - before;
+        let inside = allocations() - before;
         // The name of the convention that `pass` itself makes.
-        let convention = COUNT.with(Cell::get);
+        let convention = allocations();
         drop(unit(0.8, edges));
-        let own = COUNT.with(Cell::get) - convention;
+        let own = allocations() - convention;
         assert_eq!(inside, own);
     }
 }

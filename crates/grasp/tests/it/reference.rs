@@ -1,14 +1,11 @@
 //! Every row of the reference grasps, and the check values of the conventions.
 
-#![allow(clippy::print_stderr, reason = "a test that finds no data says so")]
-
 use grasp::hull::ConvexHull;
 use grasp::{
     Contact, Convention, EdgeNorm, Edges, GraspModel, TorqueLength, Workspace, Wrench, epsilon,
     epsilon_linf, epsilon_of_wrenches, wrenches_force_closed, wrenches_with_tangents,
 };
 use nalgebra::{Point3, Unit, UnitVector3, Vector3};
-use std::path::PathBuf;
 
 struct Row {
     contacts: Vec<Contact>,
@@ -20,14 +17,9 @@ struct Row {
     q_linf: Option<f64>,
 }
 
-fn reference_rows() -> Option<Vec<Row>> {
-    let Some(data) = std::env::var_os("MODULI_DATA") else {
-        eprintln!("MODULI_DATA is unset: the reference grasps are not compared");
-        return None;
-    };
-    let path = PathBuf::from(data).join("../reference/quality.csv");
-    let text = std::fs::read_to_string(&path).unwrap();
-    Some(text.lines().skip(1).map(parse_row).collect())
+fn reference_rows() -> Vec<Row> {
+    let rows = testkit::reference::QUALITY.lines().skip(1);
+    rows.map(parse_row).collect()
 }
 
 fn vectors(field: &str) -> Vec<Vector3<f64>> {
@@ -94,7 +86,7 @@ impl Row {
 
 #[test]
 fn epsilon_of_every_reference_row() {
-    let Some(rows) = reference_rows() else { return };
+    let rows = reference_rows();
     assert_eq!(rows.len(), 409);
     let mut workspace = Workspace::new();
     for (index, row) in rows.iter().enumerate() {
@@ -109,7 +101,7 @@ fn epsilon_of_every_reference_row() {
 
 #[test]
 fn tangent_rule_of_every_generic_reference_row() {
-    let Some(rows) = reference_rows() else { return };
+    let rows = reference_rows();
     let mut workspace = Workspace::new();
     // The last nine rows state a tangent of their own.
     for row in &rows[..400] {
@@ -120,7 +112,7 @@ fn tangent_rule_of_every_generic_reference_row() {
 
 #[test]
 fn full_hull_of_every_reference_row() {
-    let Some(rows) = reference_rows() else { return };
+    let rows = reference_rows();
     for (index, row) in rows.iter().enumerate() {
         let (volume, ball) = match ConvexHull::new(&row.wrenches()) {
             Ok(hull) => (hull.volume(), hull.ball_radius().max(0.0)),
@@ -138,7 +130,7 @@ fn full_hull_of_every_reference_row() {
 
 #[test]
 fn sums_of_every_reference_row_that_has_them() {
-    let Some(rows) = reference_rows() else { return };
+    let rows = reference_rows();
     let mut workspace = Workspace::new();
     let mut seen = 0;
     for (index, row) in rows.iter().enumerate() {
@@ -158,7 +150,7 @@ fn sums_of_every_reference_row_that_has_them() {
 
 #[test]
 fn linear_programme_agrees_on_closure() {
-    let Some(rows) = reference_rows() else { return };
+    let rows = reference_rows();
     for (index, row) in rows.iter().enumerate() {
         let closed = wrenches_force_closed(&row.wrenches());
         assert_eq!(closed, row.q_l1 > 1e-9, "row {index}: {}", row.q_l1);

@@ -6,14 +6,16 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use shape::io::{Format, Geometry, LoadError, Loaded, Warning, read_cloud};
 
-fn load(path: &str) -> Option<Result<Loaded, LoadError>> {
+/// A file below `objects`, by its extension.
+fn load(path: &str) -> Result<Loaded, LoadError> {
     let extension = path.rsplit('.').next().unwrap();
-    Some(read_cloud(&bytes(path)?, extension))
+    read_cloud(&bytes(path), extension)
 }
 
 #[test]
+#[ignore = "needs the scans of MODULI_DATA"]
 fn every_cloud_and_mesh_loads_or_is_refused_with_a_reason() {
-    let Some(root) = objects() else { return };
+    let root = objects();
     let mut seen = 0;
     for folder in ["", "meshes", "formats"] {
         for entry in std::fs::read_dir(root.join(folder)).unwrap() {
@@ -43,18 +45,16 @@ fn every_cloud_and_mesh_loads_or_is_refused_with_a_reason() {
 }
 
 #[test]
+#[ignore = "needs the scans of MODULI_DATA"]
 fn meshes_have_the_counts_of_the_index() {
-    let Some(table) = bytes("meshes/index.tsv") else {
-        return;
-    };
-    let table = String::from_utf8(table).unwrap();
+    let table = String::from_utf8(bytes("meshes/index.tsv")).unwrap();
     for line in table.lines().skip(1) {
         let fields: Vec<&str> = line.split('\t').collect();
         let (file, vertices, faces) = (fields[0], fields[5], fields[6]);
         if file.ends_with("wrl") {
             continue;
         }
-        let loaded = load(&format!("meshes/{file}")).unwrap().unwrap();
+        let loaded = load(&format!("meshes/{file}")).unwrap();
         let Geometry::Mesh(mesh) = &loaded.geometry else {
             panic!("{file} has faces");
         };
@@ -70,26 +70,24 @@ fn meshes_have_the_counts_of_the_index() {
 }
 
 #[test]
+#[ignore = "needs the scans of MODULI_DATA"]
 fn a_mesh_sampled_by_area_is_the_cloud_of_the_same_object() {
-    let Some(loaded) = load("meshes/pear_mesh.ply") else {
-        return;
-    };
+    let loaded = load("meshes/pear_mesh.ply");
     let mut rng = ChaCha8Rng::seed_from_u64(7);
     let sampled = loaded
         .unwrap()
         .cloud(Loaded::MESH_SAMPLES, &mut rng)
         .unwrap();
-    let cloud = crate::common::cloud("pear").unwrap();
+    let cloud = crate::common::cloud("pear");
     // The standard error of a mean over 25,000 points is 0.2 mm here.
     assert!((sampled.mean() - cloud.mean()).norm() <= 1e-3);
     assert!((sampled.extent() - cloud.extent()).norm() <= 1e-3);
 }
 
 #[test]
+#[ignore = "needs the scans of MODULI_DATA"]
 fn five_ways_to_write_one_cloud_give_the_same_points() {
-    let Some(first) = load("formats/baseball.xyz") else {
-        return;
-    };
+    let first = load("formats/baseball.xyz");
     let first = first.unwrap();
     assert_eq!(first.vertices().len(), 25_000);
     for (file, format) in [
@@ -97,7 +95,7 @@ fn five_ways_to_write_one_cloud_give_the_same_points() {
         ("baseball_be_double_extra.ply", Format::Ply),
         ("baseball_binary.pcd", Format::Pcd),
     ] {
-        let loaded = load(&format!("formats/{file}")).unwrap().unwrap();
+        let loaded = load(&format!("formats/{file}")).unwrap();
         assert_eq!(loaded.format, format);
         assert_eq!(loaded.vertices().len(), 25_000, "{file}");
         for (a, b) in first.vertices().iter().zip(loaded.vertices()) {
@@ -105,9 +103,7 @@ fn five_ways_to_write_one_cloud_give_the_same_points() {
             assert!((a - b).norm() <= 1e-6, "{file}: {a} {b}");
         }
     }
-    let holes = load("formats/baseball_with_50_nan_rows.ply")
-        .unwrap()
-        .unwrap();
+    let holes = load("formats/baseball_with_50_nan_rows.ply").unwrap();
     assert_eq!((holes.dropped, holes.vertices().len()), (50, 24_950));
     assert_eq!(holes.warnings, [Warning::Dropped { rows: 50 }]);
 }

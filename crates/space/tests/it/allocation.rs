@@ -1,42 +1,14 @@
 //! A step of an ascent does not touch the heap.
-#![allow(unsafe_code, reason = "counting allocations takes a global allocator")]
 
 use grasp::Convention;
 use nalgebra::{Point3, Vector3};
 use shape::{RadialField, RadialShape};
 use space::{Cap, Constraints, MonotoneAscent, Objective};
 use sph::{Coefficients, Direction, SphericalCoords, index};
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-// SAFETY: every call goes on to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.with(|c| c.set(c.get() + 1));
-        // SAFETY: the caller's contract is passed on.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: the caller's contract is passed on.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        COUNT.with(|c| c.set(c.get() + 1));
-        // SAFETY: the caller's contract is passed on.
-        unsafe { System.realloc(pointer, layout, size) }
-    }
-}
+use testkit::{CountingAllocator, allocations};
 
 #[global_allocator]
-static ALLOCATOR: Counting = Counting;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 /// Allocations of a climb of so many steps, and the steps taken.
 fn climb(
@@ -52,11 +24,11 @@ fn climb(
         ..MonotoneAscent::default()
     };
     let mut taken = 0;
-    let before = COUNT.with(Cell::get);
+    let before = allocations();
     settings
         .climb_within(surface, start, objective, constraints, |_| taken += 1)
         .unwrap();
-    (COUNT.with(Cell::get) - before, taken)
+    (allocations() - before, taken)
 }
 
 #[test]

@@ -3,16 +3,6 @@
 
 use sph::{Basis, Direction, Harmonic, SphericalCoords};
 
-/// The folder of real data and, beside it, reference numbers; `None` (said aloud) when unset.
-fn reference(file: &str) -> Option<String> {
-    let Some(data) = std::env::var_os("MODULI_DATA") else {
-        eprintln!("MODULI_DATA is not set: {file} is not compared");
-        return None;
-    };
-    let path = std::path::Path::new(&data).join("../reference").join(file);
-    Some(std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())))
-}
-
 /// e_θ and e_φ at θ, φ.
 fn chart_frame(c: SphericalCoords) -> [nalgebra::Vector3<f64>; 2] {
     let (st, ct) = c.theta.sin_cos();
@@ -25,9 +15,6 @@ fn chart_frame(c: SphericalCoords) -> [nalgebra::Vector3<f64>; 2] {
 
 #[test]
 fn every_reference_row_to_1e_12() {
-    let Some(text) = reference("ylm.csv") else {
-        return;
-    };
     let bases: Vec<usize> = vec![4, 10, 20, 50, 70, 86, 87, 90, 100, 150, 200, 300];
     let bases: Vec<Basis> = bases.into_iter().map(Basis::new).collect();
     let blank = Harmonic {
@@ -36,7 +23,7 @@ fn every_reference_row_to_1e_12() {
     };
     let mut rows = 0;
     let mut worst = 0.0_f64;
-    for line in text.lines().skip(1) {
+    for line in testkit::reference::YLM.lines().skip(1) {
         let cells: Vec<f64> = line.split(',').map(|c| c.parse().unwrap()).collect();
         let (l, m) = (cells[0] as usize, cells[1] as isize);
         let coords = SphericalCoords {

@@ -1,5 +1,5 @@
 //! What several tests share: real objects, settings, shapes, and what holds for every surface.
-#![allow(dead_code, unreachable_pub, clippy::print_stderr)]
+#![allow(dead_code, unreachable_pub)]
 
 use std::path::PathBuf;
 
@@ -28,26 +28,19 @@ pub struct Entry {
     pub star_once: f64,
 }
 
-/// `objects` in the folder named by MODULI_DATA; a test without it says so and has nothing to do.
-pub fn objects() -> Option<PathBuf> {
-    let folder = std::env::var_os("MODULI_DATA").map(|root| PathBuf::from(root).join("objects"));
-    if folder.is_none() {
-        eprintln!("MODULI_DATA is not set: real scans are not looked at");
-    }
-    folder
+/// The folder of scans. Tests that use it are ignored unless they are asked for.
+pub fn objects() -> PathBuf {
+    testkit::scans().join("objects")
 }
 
 /// Bytes of a file below `objects`.
-pub fn bytes(path: &str) -> Option<Vec<u8>> {
-    Some(std::fs::read(objects()?.join(path)).expect(path))
+pub fn bytes(path: &str) -> Vec<u8> {
+    testkit::scan_bytes(&format!("objects/{path}"))
 }
 
 /// The list of clouds.
 pub fn index() -> Vec<Entry> {
-    let Some(text) = bytes("index.tsv") else {
-        return Vec::new();
-    };
-    let text = String::from_utf8(text).unwrap();
+    let text = String::from_utf8(bytes("index.tsv")).unwrap();
     let mut lines = text.lines().map(|l| l.split('\t').collect::<Vec<_>>());
     let titles = lines.next().unwrap();
     let column = |title: &str| titles.iter().position(|t| *t == title).expect(title);
@@ -62,10 +55,10 @@ pub fn index() -> Vec<Entry> {
 }
 
 /// A cloud of the list, in metres.
-pub fn cloud(name: &str) -> Option<PointCloud> {
-    let bytes = bytes(&format!("{name}.ply"))?;
+pub fn cloud(name: &str) -> PointCloud {
+    let bytes = bytes(&format!("{name}.ply"));
     let points = shape::io::read_ply(&bytes).unwrap().points;
-    Some(PointCloud::new(points).unwrap())
+    PointCloud::new(points).unwrap()
 }
 
 /// The cloud with normal noise of a deviation in metres on every coordinate.
