@@ -12,7 +12,7 @@ use space::Objective;
 use crate::args::{Common, MoveOptions};
 use crate::failure::Failure;
 use crate::placed::{Moved, Object, Placed, TraceStep};
-use crate::{input, output};
+use crate::{files, output};
 
 /// Version of the layout of traces.
 const TRACE_VERSION: u32 = 1;
@@ -58,7 +58,7 @@ impl Movement<'_> {
         one: impl Fn(usize, &Placed) -> Result<Moved, Failure> + Sync,
     ) -> Result<(), Failure> {
         let results: Vec<&PathBuf> = options.output.iter().chain(&options.trace).collect();
-        run::check_results(&results, &input::files_read())?;
+        run::check_results(&results, &files::read_so_far())?;
         let bar = output::progress(common.quiet, grasps.len(), self.doing);
         let moved = move_all(grasps, |i, placed| {
             bar.inc(1);

@@ -1,8 +1,6 @@
 //! Files of the user: clouds, shapes, grasps.
 
-use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::path::Path;
 
 use grasp::{Convention, Edges};
 use rand::SeedableRng;
@@ -14,31 +12,15 @@ use shape::{Fit, FitError, FitSettings, PointCloud};
 
 use crate::args::{CloudOptions, ConventionOptions};
 use crate::failure::Failure;
+use crate::files;
 use crate::output::warn;
 
 /// Share of unseen directions from which on the user is told.
 const GUESSED: f64 = 0.1;
 
-/// Every file that this run has read, so that none of them is overwritten.
-static READ: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
-
 /// The bytes of a file.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
-    bytes(path).map_err(|e| Failure::input(path, e))
-}
-
-/// The bytes of a file, with the system's own error.
-pub(crate) fn bytes(path: &Path) -> std::io::Result<Vec<u8>> {
-    let bytes = std::fs::read(path)?;
-    let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
-    read.insert(path.to_owned());
-    Ok(bytes)
-}
-
-/// The files that have been read so far.
-pub(crate) fn files_read() -> Vec<PathBuf> {
-    let read = READ.lock().unwrap_or_else(PoisonError::into_inner);
-    read.iter().cloned().collect()
+    files::bytes(path).map_err(|e| Failure::input(path, e))
 }
 
 /// A table of numbers with this many columns from a `.npy` file.

@@ -4,6 +4,7 @@ mod args;
 mod commands;
 mod delivery;
 mod failure;
+mod files;
 mod hands;
 mod input;
 mod limits;

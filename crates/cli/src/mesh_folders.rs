@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
-use crate::input;
+use crate::files;
 
 /// Larger files are not read.
 const MAX_BYTES: u64 = 64 << 20;
@@ -61,7 +61,7 @@ impl MeshFolders {
         if facts.len() > MAX_BYTES {
             return Err(format!("{} bytes, more than {MAX_BYTES}", facts.len()));
         }
-        input::bytes(&path).map_err(|e| format!("{}: {e}", path.display()))
+        files::bytes(&path).map_err(|e| format!("{}: {e}", path.display()))
     }
 
     fn places(&self, name: &str) -> Vec<PathBuf> {

@@ -9,7 +9,7 @@ use run::npy::Table;
 use serde::Serialize;
 
 use crate::failure::Failure;
-use crate::input;
+use crate::files;
 
 /// A line of the result.
 ///
@@ -78,7 +78,7 @@ pub(crate) fn progress(quiet: bool, total: usize, what: &str) -> ProgressBar {
 
 /// Writes a whole result; what the program has read is never overwritten.
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    Ok(run::write(path, bytes, &input::files_read())?)
+    Ok(run::write(path, bytes, &files::read_so_far())?)
 }
 
 impl From<WriteError> for Failure {

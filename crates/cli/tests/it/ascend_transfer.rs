@@ -244,23 +244,9 @@ fn many_transfers_go_on_where_they_were_interrupted() {
     let here = folder.path();
     fitted(here, "drop", [0.03, 0.036, 0.04], [0.1, 0.0, 0.0]);
     let whole = |more: &[&str]| -> Value {
-        let arguments = [
-            "transfer",
-            "--from",
-            "egg.shape",
-            "--to",
-            "ball.shape",
-            "--to",
-            "drop.shape",
-            "--to",
-            "egg.shape",
-            "grasps.json",
-            "-o",
-            "all",
-            "--scheme",
-            "naive",
-            "--json",
-        ];
+        let arguments = "transfer --from egg.shape --to ball.shape --to drop.shape --to egg.shape \
+                         grasps.json -o all --scheme naive --json";
+        let arguments: Vec<&str> = arguments.split_whitespace().collect();
         let line = stdout(&moduli(here, &[&arguments[..], more].concat()));
         serde_json::from_str(&line).unwrap()
     };

@@ -22,7 +22,7 @@ use crate::args::{Common, TransferOptions};
 use crate::delivery::move_all;
 use crate::failure::Failure;
 use crate::placed::{Object, Placed};
-use crate::{input, output};
+use crate::{files, input, output};
 
 /// A table of all pairs, written when all are done.
 const TABLE: &str = "transfers.json";
@@ -91,7 +91,7 @@ pub(super) fn run(options: &TransferOptions, common: &Common) -> Result<(), Fail
         .map(|pair| &pair.file)
         .chain([&table])
         .collect();
-    run::check_results(&results, &input::files_read())?;
+    run::check_results(&results, &files::read_so_far())?;
     let mut lines: Vec<Option<PairLine>> = pairs.iter().map(|pair| pair.done()).collect();
     let kept = lines.iter().flatten().count();
     let bar = output::progress(common.quiet, pairs.len(), "transferring pairs");
