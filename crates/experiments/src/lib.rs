@@ -4,8 +4,8 @@
 //! table. The constants of the paper are in [`paper`] alone.
 
 pub mod args;
+pub mod drawing;
 pub mod error;
-pub mod figures;
 pub mod ledger;
 pub mod library;
 pub mod objects;
@@ -19,5 +19,5 @@ pub mod statistics;
 pub mod table;
 
 pub use error::ExperimentError;
-pub use output::Findings;
+pub use output::Results;
 pub use run::{Run, Scale};

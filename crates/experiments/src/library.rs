@@ -31,10 +31,13 @@ pub struct LibrarySettings {
 }
 
 impl LibrarySettings {
+    /// The seed of the library under `fixtures/`.
+    pub const SEED: u64 = 2014;
+
     /// The library under `fixtures/`, with grasps ranked under a convention.
     pub fn standard(convention: Convention) -> Self {
         Self {
-            seed: 2014,
+            seed: Self::SEED,
             fit: fit_settings(paper::DEGREE, None),
             convention,
             poses: paper::HAND_POSES,

@@ -1,4 +1,4 @@
-//! What a section found, and where its files go.
+//! The results of a section, and where its files go.
 
 use std::path::{Path, PathBuf};
 
@@ -7,9 +7,9 @@ use serde_json::Value;
 
 use crate::table::Table;
 
-/// What a section found.
+/// The results of a section, for its files and for people.
 #[derive(Clone, Debug)]
-pub struct Findings {
+pub struct Results {
     /// Which objects it ran on, and which were refused.
     pub objects: Value,
     /// What the paper says.

@@ -5,6 +5,8 @@
 
 use std::ops::Range;
 
+use space::PaperAscent;
+
 /// Points of a cloud (Sec. IV-A).
 pub const CLOUD_POINTS: usize = 25_000;
 /// Highest degree L of a surface (Sec. IV-A).
@@ -73,6 +75,15 @@ pub const UNSTABLE_BELOW: f64 = 0.01;
 pub const UNSTABLE_TRANSFERS: usize = 9;
 /// Unstable transfers by starting surface; all others had none (Sec. IV-E).
 pub const UNSTABLE_BY_SOURCE: [(usize, usize); 5] = [(2, 2), (4, 1), (5, 1), (9, 4), (10, 1)];
+
+/// The ascent of Sec. IV-D with some number of steps.
+pub fn ascent(steps: usize) -> PaperAscent {
+    PaperAscent {
+        steps,
+        delta: DIFFERENCE_STEP,
+        rate: ASCENT_RATE,
+    }
+}
 
 /// Unstable transfers that the paper counts from starting surface S_i.
 pub fn unstable_from(source: usize) -> usize {

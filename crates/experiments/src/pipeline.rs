@@ -8,7 +8,7 @@ use nalgebra::Point3;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use shape::{Fit, FitSettings, RadialField, RadialShape};
-use space::Objective;
+use space::{Objective, Transfer, TransferEnd};
 use sph::Direction;
 
 use crate::error::ExperimentError;
@@ -217,4 +217,17 @@ pub fn best_grasps(
         return Err(ExperimentError::NoGrasps { poses });
     }
     Ok(all)
+}
+
+/// What both schemes need, from one object to another.
+pub fn transfer_between<'a>(
+    run: &'a Run,
+    from: &'a FittedObject,
+    to: &'a FittedObject,
+) -> Transfer<'a> {
+    let end = |object: &'a FittedObject| TransferEnd {
+        surface: &object.surface,
+        object_origin: object.object_origin(),
+    };
+    Transfer::new(end(from), end(to), &run.convention)
 }

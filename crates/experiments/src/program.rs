@@ -12,12 +12,12 @@ use serde_json::{Value, json};
 use crate::args::Args;
 use crate::error::ExperimentError;
 use crate::ledger;
-use crate::output::{Findings, write};
+use crate::output::{Results, write};
 use crate::run::{Run, fit_settings};
 use crate::table::Table;
 
 /// A section of the paper as a function.
-pub type Experiment = fn(&Run) -> Result<Findings, ExperimentError>;
+pub type Experiment = fn(&Run) -> Result<Results, ExperimentError>;
 
 /// Reads the command line, runs the section on its own pool of threads, writes `OUT/<name>.json`
 /// and prints the table. Exit codes: 0 done, 2 usage, 3 bad input, 4 numerical refusal, 1 else.
@@ -71,22 +71,22 @@ pub fn execute(
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(args.threads.unwrap_or(0))
         .build()?;
-    let findings = pool.install(|| section(&run))?;
+    let results = pool.install(|| section(&run))?;
     let seconds = start.elapsed().as_secs_f64();
-    let refused = refusals(&findings.objects);
-    let table = findings.table.to_string();
+    let refused = refusals(&results.objects);
+    let table = results.table.to_string();
     let value = json!({
         "experiment": name,
         "scale": args.scale,
         "seed": args.seed,
         "threads": pool.current_num_threads(),
-        "objects": findings.objects,
+        "objects": results.objects,
         "convention": convention_record(&args.convention),
-        "paper": findings.paper,
-        "ours": findings.ours,
+        "paper": results.paper,
+        "ours": results.ours,
         "seconds": seconds,
     });
-    let page = page(name, about, args, findings.table, findings.figures).to_html()?;
+    let page = page(name, about, args, results.table, results.figures).to_html()?;
     write(&args.out, &format!("{name}.html"), page.as_bytes())?;
     let bytes = serde_json::to_vec_pretty(&value)?;
     let path = write(&args.out, &format!("{name}.json"), &bytes)?;

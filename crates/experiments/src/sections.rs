@@ -1,4 +1,8 @@
-//! One file a section of the paper; each computes, and says what the paper found.
+//! The sections of the paper.
+//!
+//! Every section has three parts: findings (the data), a measurement that computes them, and figures
+//! that are drawn from them. Its `run` calls the measurement and the figures and puts the results
+//! together.
 
 pub mod eigenfunctions;
 pub mod gradient_ascent;

@@ -1,33 +1,34 @@
-//! A short table for people.
+//! Tables of results.
 
 use std::fmt;
 
-/// Rows of text under a header; the first column to the left, the others to the right.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+/// A table with lines of text below, for a terminal and for a page.
+///
+/// On a terminal the first column stands to the left, the others to the right.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// A line above.
-    pub title: String,
-    /// Names of the columns.
-    pub header: Vec<String>,
-    /// One list of cells a row.
-    pub rows: Vec<Vec<String>>,
+    /// Title, headers and rows.
+    pub cells: report::Table,
     /// Lines below.
     pub notes: Vec<String>,
 }
 
 impl Table {
     /// A table without rows.
-    pub fn new(title: impl Into<String>, header: &[&str]) -> Self {
+    pub fn new(title: impl Into<String>, headers: &[&str]) -> Self {
         Self {
-            title: title.into(),
-            header: header.iter().map(|&h| h.to_owned()).collect(),
-            ..Self::default()
+            cells: report::Table {
+                title: title.into(),
+                headers: headers.iter().map(|&h| h.to_owned()).collect(),
+                rows: Vec::new(),
+            },
+            notes: Vec::new(),
         }
     }
 
     /// Adds a row.
-    pub fn row<const N: usize>(&mut self, cells: [String; N]) {
-        self.rows.push(cells.into());
+    pub fn row(&mut self, cells: impl Into<Vec<String>>) {
+        self.cells.rows.push(cells.into());
     }
 
     /// Adds a line below.
@@ -35,18 +36,13 @@ impl Table {
         self.notes.push(line.into());
     }
 
-    /// The same table for a page, as a section with its notes below.
-    pub fn section(&self) -> report::Section {
-        let table = report::Table {
-            title: self.title.clone(),
-            headers: self.header.clone(),
-            rows: self.rows.clone(),
-        };
+    /// The table and its notes as a section of a page.
+    pub fn section(self) -> report::Section {
         report::Section {
             heading: "Numbers".to_owned(),
             text: String::new(),
             blocks: vec![
-                report::Block::Table(table),
+                report::Block::Table(self.cells),
                 report::Block::Text(self.notes.join("\n\n")),
             ],
         }
@@ -55,7 +51,7 @@ impl Table {
 
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let lines = || std::iter::once(&self.header).chain(&self.rows);
+        let lines = || std::iter::once(&self.cells.headers).chain(&self.cells.rows);
         let columns = lines().map(Vec::len).max().unwrap_or(0);
         let width = |k: usize| {
             lines()
@@ -65,7 +61,7 @@ impl fmt::Display for Table {
                 .unwrap_or(0)
         };
         let widths: Vec<usize> = (0..columns).map(width).collect();
-        writeln!(f, "{}", self.title)?;
+        writeln!(f, "{}", self.cells.title)?;
         for line in lines() {
             for (k, (cell, &width)) in line.iter().zip(&widths).enumerate() {
                 match k {

@@ -18,6 +18,9 @@ struct Args {
     /// Folder for library.bin
     #[arg(long, value_name = "DIR", default_value = "fixtures")]
     out: PathBuf,
+    /// Seed of the scans and of the hand poses: the same seed gives the same library
+    #[arg(long, default_value_t = LibrarySettings::SEED)]
+    seed: u64,
     /// Threads to use; all processors when absent
     #[arg(long)]
     threads: Option<usize>,
@@ -37,7 +40,10 @@ fn main() -> ExitCode {
 
 fn execute(args: &Args) -> Result<String, ExperimentError> {
     let start = Instant::now();
-    let settings = LibrarySettings::standard(Convention::named("paper")?);
+    let settings = LibrarySettings {
+        seed: args.seed,
+        ..LibrarySettings::standard(Convention::named("paper")?)
+    };
     let threads = args.threads.unwrap_or(0);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)

@@ -3,7 +3,6 @@
 use experiments::objects::{ObjectSource, Objects};
 use experiments::pipeline::{FittedSet, best_grasps, fit_all};
 use experiments::run::{Run, Scale, fit_settings};
-use experiments::sections::gradient_ascent::paper_ascent;
 use experiments::sections::{
     gradient_ascent, initial_grasps, reconstruction, sampling, scattered_starts, shape_space,
     transfer,
@@ -53,7 +52,7 @@ fn all_numbers(threads: usize) -> Result<Value, ExperimentError> {
                 .iter().map(|f| &f.record).collect::<Vec<_>>(),
             "shape_space": shape_space::measure(&run, &shape_space_plan(), &set)?,
             "sampling": sampling::measure(&run, &sampling_plan(), &set)?,
-            "initial": initial_grasps::measure(&run, &initial_grasps::Plan { poses: 60 }, &set)?,
+            "initial": initial_grasps::measure(&run, &initial_grasps::Settings { poses: 60 }, &set)?,
             "ascent": gradient_ascent::measure(&run, &ascent_plan(), &set, &ascent_grasps)?.0,
             "transfer": transfer::measure(&run, &transfer_plan(), &set, &carried_grasps)?.0,
             "starts": scattered_starts::measure(&run, &starts_plan(), &set, &carried_grasps)?.0,
@@ -61,58 +60,58 @@ fn all_numbers(threads: usize) -> Result<Value, ExperimentError> {
     })
 }
 
-fn reconstruction_plan() -> reconstruction::Plan {
-    reconstruction::Plan {
+fn reconstruction_plan() -> reconstruction::Settings {
+    reconstruction::Settings {
         objects: None,
         degrees: vec![2, 8],
         truth_directions: 200,
     }
 }
 
-fn shape_space_plan() -> shape_space::Plan {
-    shape_space::Plan {
+fn shape_space_plan() -> shape_space::Settings {
+    shape_space::Settings {
         spheres: 4,
         sphere_points: 1_000,
         deformation_steps: 4,
     }
 }
 
-fn sampling_plan() -> sampling::Plan {
-    sampling::Plan {
+fn sampling_plan() -> sampling::Settings {
+    sampling::Settings {
         samples: 3,
         coarse_sigmas: vec![0.005, 0.05],
         fine_sigmas: vec![],
     }
 }
 
-fn ascent_plan() -> gradient_ascent::Plan {
-    gradient_ascent::Plan {
+fn ascent_plan() -> gradient_ascent::Settings {
+    gradient_ascent::Settings {
         poses: 60,
         grasps: 2,
-        ascent: paper_ascent(15),
+        ascent: paper::ascent(15),
     }
 }
 
-fn transfer_plan() -> transfer::Plan {
-    transfer::Plan {
+fn transfer_plan() -> transfer::Settings {
+    transfer::Settings {
         objects: None,
         poses: 60,
         grasps: 1,
         transfer: PaperTransfer {
             intervals: paper::TRANSFER_STATIONS - 1,
-            ascent: paper_ascent(3),
+            ascent: paper::ascent(3),
         },
     }
 }
 
-fn starts_plan() -> scattered_starts::Plan {
-    scattered_starts::Plan {
+fn starts_plan() -> scattered_starts::Settings {
+    scattered_starts::Settings {
         objects: None,
         poses: 60,
         grasps: 1,
         sample: 2,
         runs: 2,
-        ascent: paper_ascent(5),
+        ascent: paper::ascent(5),
     }
 }
 
@@ -132,7 +131,8 @@ fn the_number_of_threads_changes_no_number() {
 fn every_pose_is_counted_once_and_grasps_are_ranked() {
     let run = tiny_run();
     let set = tiny_set(&run).unwrap();
-    let found = initial_grasps::measure(&run, &initial_grasps::Plan { poses: 60 }, &set).unwrap();
+    let found =
+        initial_grasps::measure(&run, &initial_grasps::Settings { poses: 60 }, &set).unwrap();
     for o in &found {
         let rejected: u64 = o.rejected.values().filter_map(Value::as_u64).sum();
         assert_eq!(o.stable + o.unstable + rejected as usize, 60, "{}", o.id);
@@ -153,7 +153,7 @@ fn every_convention_finds_stable_grasps_on_a_round_object() {
         run.convention = Convention::named(name).unwrap();
         let mut set = tiny_set(&run).unwrap();
         set.objects.retain(|o| o.id() == "S11");
-        let plan = initial_grasps::Plan { poses: 40 };
+        let plan = initial_grasps::Settings { poses: 40 };
         let found = initial_grasps::measure(&run, &plan, &set).unwrap();
         assert!(found[0].stable > 0, "{name}");
         let own = found[0]

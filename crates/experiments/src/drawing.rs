@@ -1,7 +1,7 @@
-//! Surfaces, clouds and contacts as items of a scene, in millimetres.
+//! Surfaces, clouds and contacts as items of a scene, in millimetres; what all figures share.
 
 use nalgebra::{Point3, Vector3};
-use report::{Arrows, Item, Lines, Mesh, Points, SceneCell, Surface};
+use report::{Arrows, Block, Item, Lines, Mesh, Points, SceneCell, Section, Surface};
 use shape::{PointCloud, RadialShape, Surface as _};
 use space::point::contacts_on;
 use sph::{Coefficients, Direction, batch};
@@ -100,5 +100,14 @@ pub fn grasp_cell(label: String, shape: &RadialShape, directions: &[Direction]) 
     SceneCell {
         label,
         items: vec![surface(shape), contacts(shape, directions)],
+    }
+}
+
+/// A section of figures with a line of text.
+pub fn section(heading: &str, text: &str, blocks: Vec<Block>) -> Section {
+    Section {
+        heading: heading.to_owned(),
+        text: text.to_owned(),
+        blocks,
     }
 }

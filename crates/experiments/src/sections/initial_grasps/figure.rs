@@ -1,14 +1,79 @@
-//! Sec. IV-C: the best hand grasps, what became of the poses, qualities.
+//! The best hand grasps, the outcomes of the poses, and the qualities.
 
+use grasp::Convention;
 use report::{BarSeries, Bars, Block, Histogram, Sample, SceneGrid, Section};
 
-use super::section;
-use super::surfaces::grasp_cell;
+use super::findings::ObjectGrasps;
+use crate::drawing::{grasp_cell, section};
+use crate::paper;
 use crate::pipeline::FittedSet;
-use crate::sections::initial_grasps::ObjectGrasps;
+use crate::table::{Table, number, per_cent};
+
+pub(super) fn table(ours: &[ObjectGrasps], conventions: &[Convention]) -> Table {
+    let poses = ours.first().map_or(0, |o| o.poses);
+    let mut table = Table::new(
+        format!(
+            "Sec. IV-C: {poses} hand poses a surface; then the mean quality of the stable grasps under each convention"
+        ),
+        &[
+            "object", "stable", "of 1400", "unstable", "rejected", "best", "10th", "50th",
+        ],
+    );
+    table
+        .cells
+        .headers
+        .extend(conventions.iter().map(|c| c.name.clone()));
+    for o in ours {
+        let ranked = |rank: usize| number(o.best_qualities.get(rank - 1).copied(), 3);
+        let mut row = vec![
+            o.id.clone(),
+            o.stable.to_string(),
+            number(Some(o.stable_of_1400), 0),
+            o.unstable.to_string(),
+            (o.poses - o.stable - o.unstable).to_string(),
+            ranked(1),
+            ranked(paper::VERY_BEST_GRASPS),
+            ranked(paper::BEST_GRASPS),
+        ];
+        row.extend(
+            o.conventions
+                .iter()
+                .map(|c| number(c.quality.map(|q| q.mean), 4)),
+        );
+        table.row(row);
+    }
+    let least = ours
+        .iter()
+        .map(|o| o.stable_of_1400)
+        .fold(f64::INFINITY, f64::min);
+    table.note(format!(
+        "Stable grasps of 1400 poses: at least {least:.0} on every object; paper: more than {}",
+        paper::STABLE_GRASPS_ABOVE
+    ));
+    for convention in conventions {
+        table.note(rank_note(ours, &convention.name));
+    }
+    table
+}
+
+fn rank_note(ours: &[ObjectGrasps], name: &str) -> String {
+    let of = |o: &ObjectGrasps| {
+        let found = o.conventions.iter().find(|c| c.name == name)?;
+        Some((found.rank_correlation?, found.share_closed?))
+    };
+    let found: Vec<(f64, f64)> = ours.iter().filter_map(of).collect();
+    let mean = |pick: fn(&(f64, f64)) -> f64| {
+        crate::statistics::mean(&found.iter().map(pick).collect::<Vec<_>>())
+    };
+    format!(
+        "{name}: {} force-closed, rank correlation {}",
+        per_cent(mean(|f| f.1)),
+        number(mean(|f| f.0), 2)
+    )
+}
 
 /// The best grasp of each object, outcomes and qualities.
-pub fn figures(set: &FittedSet, found: &[ObjectGrasps]) -> Vec<Section> {
+pub(super) fn figures(set: &FittedSet, found: &[ObjectGrasps]) -> Vec<Section> {
     let cells = set
         .objects
         .iter()

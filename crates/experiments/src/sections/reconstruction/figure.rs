@@ -2,14 +2,59 @@
 
 use report::{Axis, Block, Chart, SceneCell, SceneGrid, Section, Series};
 
-use super::section;
-use super::surfaces::{cloud, surface};
-use crate::objects::ObjectCloud;
+use super::findings::{Fitted, Reconstruction};
+use crate::drawing::{cloud, section, surface};
+use crate::objects::{ObjectCloud, Objects};
 use crate::paper;
-use crate::sections::reconstruction::{Fitted, Reconstruction};
+use crate::table::{Table, millimetres};
+
+pub(super) fn table(objects: &Objects, fits: &[&Reconstruction]) -> Table {
+    let mut table = Table::new(
+        "Fig. 2: error against L, in mm: plain least squares (as the paper) | with the penalty",
+        &[
+            "object",
+            "L",
+            "rms",
+            "held out",
+            "from truth",
+            "M^rad",
+            "rms",
+            "held out",
+            "from truth",
+            "M^rad",
+        ],
+    );
+    for object in &objects.clouds {
+        let mut degrees: Vec<usize> = fits.iter().map(|f| f.degree).collect();
+        degrees.sort_unstable();
+        degrees.dedup();
+        for degree in degrees {
+            let of = |penalised| {
+                let fit = fits
+                    .iter()
+                    .find(|f| f.id == object.id && f.degree == degree && f.penalised == penalised);
+                cells(fit.copied())
+            };
+            let head = vec![object.id.clone(), degree.to_string()];
+            table.row([head, of(false), of(true)].concat());
+        }
+    }
+    table.note("The paper shows pictures and no numbers here.");
+    table
+}
+
+fn cells(fit: Option<&Reconstruction>) -> Vec<String> {
+    let yes_no = fit.map_or("–", |f| if f.in_m_rad { "yes" } else { "no" });
+    vec![
+        millimetres(fit.map(|f| f.rms_m), 3),
+        millimetres(fit.and_then(|f| f.held_out_rms_m), 3),
+        millimetres(fit.and_then(|f| f.true_rms_m), 3),
+        yes_no.to_owned(),
+    ]
+}
 
 /// Errors of every object, and the surfaces of S8 (or of the last object).
-pub fn figures(objects: &[ObjectCloud], fits: &[Fitted]) -> Vec<Section> {
+pub(super) fn figures(objects: &[ObjectCloud], fits: &[Fitted]) -> Vec<Section> {
     let charts = objects
         .iter()
         .map(|object| Block::Chart(chart(object, fits)))

@@ -1,18 +1,18 @@
-//! Fig. 1: eigenfunctions on the sphere.
+//! Fig. 1: eigenfunctions on the sphere, and their errors.
 
 use report::{Axis, Block, Chart, ColourScale, SceneCell, SceneGrid, Section, Series};
 use shape::{RadialError, RadialShape};
 use sph::{Coefficients, index};
 
-use super::section;
-use super::surfaces::coloured;
-use crate::sections::eigenfunctions::Eigenfunctions;
+use super::findings::Eigenfunctions;
+use crate::drawing::{coloured, section};
+use crate::table::Table;
 
 /// Functions up to this degree are drawn.
 const DRAWN_DEGREE: usize = 3;
 
 /// The first eigenfunctions, and the errors by degree.
-pub fn figures(found: &Eigenfunctions) -> Result<Vec<Section>, RadialError> {
+pub(super) fn figures(found: &Eigenfunctions) -> Result<Vec<Section>, RadialError> {
     let errors = found
         .laplacian_error_by_degree
         .iter()
@@ -62,4 +62,28 @@ fn grid() -> Result<SceneGrid, RadialError> {
         colour_scale: ColourScale::Diverging,
         value_label: "Y".to_owned(),
     })
+}
+
+/// The largest errors.
+pub(super) fn table(ours: &Eigenfunctions) -> Table {
+    let mut table = Table::new(
+        format!(
+            "Fig. 1: {} eigenfunctions Y_lm, l up to {}",
+            ours.functions, ours.degree
+        ),
+        &["largest error", "here", "paper"],
+    );
+    let mut row = |what: &str, value: f64, paper: &str| {
+        table.row([what.into(), format!("{value:.1e}"), paper.into()]);
+    };
+    row("orthonormality", ours.orthonormality_error, "0");
+    row("against the formula of Sec. II-C", ours.formula_error, "0");
+    row("ΔY = -l(l+1) Y, Hessian", ours.laplacian_error, "0");
+    row(
+        "ΔY = -l(l+1) Y, differences",
+        ours.difference_laplacian_error,
+        "0",
+    );
+    table.note("The paper prints ΔY = +l(l+1) Y; with its own Laplacian the sign is minus.");
+    table
 }

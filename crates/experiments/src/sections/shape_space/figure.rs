@@ -4,13 +4,58 @@ use report::{
     Axis, Block, Chart, Item, Lines, Mark, Points, Scene, SceneCell, SceneGrid, Section, Series,
 };
 
-use super::section;
-use super::surfaces::surface;
-use crate::pipeline::FittedSet;
-use crate::sections::shape_space::{Place, ShapeSpace};
+use super::findings::{Place, ShapeSpace};
+use crate::drawing::{section, surface};
+use crate::pipeline::{FittedObject, FittedSet};
+use crate::table::{Table, millimetres, number, per_cent};
+
+pub(super) fn table(ours: &ShapeSpace) -> Table {
+    let mut table = Table::new(
+        "Sec. IV-A: which shapes the deformations pass (paper: S7 and S8)",
+        &[
+            "shape",
+            "way",
+            "at t",
+            "distance mm",
+            "of nearer end",
+            "nearest there",
+        ],
+    );
+    for p in &ours.passings {
+        table.row([
+            p.id.clone(),
+            format!("{}→{}", p.from, p.to),
+            number(Some(p.t), 2),
+            millimetres(Some(p.distance_m), 1),
+            per_cent(Some(p.distance_over_nearer_end)),
+            if p.nearest_object_there { "yes" } else { "no" }.into(),
+        ]);
+    }
+    if let Some(line) = &ours.spheres {
+        let nearest: Vec<String> = line
+            .objects_by_distance
+            .iter()
+            .take(3)
+            .map(|(id, d, r)| format!("{id} {:.1} mm at radius {:.1} mm", 1e3 * d, 1e3 * r))
+            .collect();
+        table.note(format!(
+            "{} spheres bend by {} of their line; nearest to it (paper: S11 and S12): {}",
+            line.radii_m.len(),
+            per_cent(Some(line.bend)),
+            nearest.join(", "),
+        ));
+    }
+    table.note(format!(
+        "MDS of {} shapes keeps {} of the squared distances in 2 dimensions, {} in 3",
+        ours.places.len(),
+        per_cent(Some(ours.explained[0])),
+        per_cent(Some(ours.explained[1])),
+    ));
+    table
+}
 
 /// The surfaces, and the scaling in two and three dimensions.
-pub fn figures(set: &FittedSet, found: &ShapeSpace) -> Vec<Section> {
+pub(super) fn figures(set: &FittedSet, found: &ShapeSpace) -> Vec<Section> {
     vec![
         section(
             "Objects",
@@ -26,7 +71,7 @@ pub fn figures(set: &FittedSet, found: &ShapeSpace) -> Vec<Section> {
 }
 
 fn grid(set: &FittedSet) -> SceneGrid {
-    let cell = |o: &crate::pipeline::FittedObject| SceneCell {
+    let cell = |o: &FittedObject| SceneCell {
         label: format!(
             "{} {}",
             o.id(),

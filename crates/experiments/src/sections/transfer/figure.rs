@@ -1,24 +1,80 @@
-//! Fig. 9 and the first page: quality before and after transfers, and one grasp on its way.
+//! Fig. 9: quality before and after transfers, and one grasp on its way.
 
 use report::{Axis, BarSeries, Bars, Block, Chart, SceneCell, SceneGrid, Section, Series};
 use shape::RadialShape;
 use sph::Direction;
 
-use super::section;
-use super::surfaces::grasp_cell;
+use super::findings::{Carried, Count, DrawnTransfer, Settings};
+use crate::drawing::{grasp_cell, section};
+use crate::ledger::ThreadSeconds;
 use crate::paper;
-use crate::sections::transfer::{Carried, Count};
+use crate::table::{Table, number};
 
-/// One grasp on its way, as it is to be drawn.
-pub struct DrawnTransfer {
-    /// From where to where.
-    pub title: String,
-    /// Surfaces with the contacts as they leave them, and the quality.
-    pub stations: Vec<(RadialShape, Vec<Direction>, f64)>,
+pub(super) fn table(settings: &Settings, counts: &[Count], times: &ThreadSeconds) -> Table {
+    let mut table = Table::new(
+        format!(
+            "Sec. IV-E: {} stations of {} steps, the best {} grasps of {} poses (paper: {}, {}, {}, {})",
+            settings.transfer.intervals + 1,
+            settings.transfer.ascent.steps,
+            settings.grasps,
+            settings.poses,
+            paper::TRANSFER_STATIONS,
+            paper::TRANSFER_STEPS,
+            paper::VERY_BEST_GRASPS,
+            paper::HAND_POSES
+        ),
+        &[
+            "from",
+            "transfers",
+            "unstable",
+            "in the paper",
+            "naive unstable",
+            "initial",
+            "final",
+            "naive",
+            "ours Q < 0.01",
+            "ours",
+            "evaluations",
+        ],
+    );
+    for c in counts {
+        let of = if c.from == "all" {
+            paper::TRANSFERS
+        } else {
+            paper::TRANSFERS_PER_SOURCE
+        };
+        let in_paper = c
+            .unstable_in_paper
+            .map_or("–".to_owned(), |n| format!("{n} of {of}"));
+        table.row([
+            c.from.clone(),
+            c.transfers.to_string(),
+            c.unstable.to_string(),
+            in_paper,
+            c.unstable_naive.to_string(),
+            number(c.mean_initial, 3),
+            number(c.mean_final, 3),
+            number(c.mean_naive, 3),
+            c.unstable_ours.to_string(),
+            number(c.mean_ours, 3),
+            number(c.evaluations_ratio, 1),
+        ]);
+    }
+    table.note(format!(
+        "Seconds of all transfers, summed over threads: {:.1}, ours {:.1}",
+        times.paper, times.ours
+    ));
+    table.note("evaluations: qualities that the paper's transfer computes for one of ours");
+    table.note(format!(
+        "The paper carried {} grasps, {} of which ended unstable",
+        paper::TRANSFERS,
+        paper::UNSTABLE_TRANSFERS
+    ));
+    table
 }
 
 /// Quality before and after, unstable transfers by source, one transfer.
-pub fn figures(
+pub(super) fn figures(
     carried: &[Carried],
     counts: &[Count],
     drawn: Option<&DrawnTransfer>,

@@ -1,0 +1,86 @@
+//! The numbers behind Fig. 4.
+
+use serde::Serialize;
+
+use crate::paper;
+use crate::run::Run;
+
+/// What is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Number of spheres.
+    pub spheres: usize,
+    /// Points of each sphere's cloud.
+    pub sphere_points: usize,
+    /// Equal steps of a deformation.
+    pub deformation_steps: usize,
+}
+
+impl Settings {
+    /// The settings of a run.
+    pub fn of(run: &Run) -> Self {
+        Self {
+            spheres: run.scale.pick(10, paper::SPHERES),
+            sphere_points: run.scale.pick(5_000, paper::CLOUD_POINTS),
+            deformation_steps: 10,
+        }
+    }
+}
+
+/// One point of the shape space with its place in the pictures.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Place {
+    /// What it is: an object's id, "sphere 30.0 mm", "S5→S1 at 0.10".
+    pub label: String,
+    /// "object", "sphere" or "deformation".
+    pub kind: &'static str,
+    /// Coordinates of the three-dimensional scaling, metres; the first two are the plane's.
+    pub coordinates: Vec<f64>,
+}
+
+/// How near a shape is to the straight way between two others.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Passing {
+    /// The shape.
+    pub id: String,
+    /// Start of the way.
+    pub from: String,
+    /// End of the way.
+    pub to: String,
+    /// Where on the way it is nearest, 0 at the start and 1 at the end.
+    pub t: f64,
+    /// Distance from that point of the way, metres.
+    pub distance_m: f64,
+    /// That distance over the distance from the nearer end.
+    pub distance_over_nearer_end: f64,
+    /// Whether there the way is nearer to this shape than to any other object, its ends included.
+    pub nearest_object_there: bool,
+}
+
+/// How the spheres lie in the shape space.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SphereLine {
+    /// Radii, metres.
+    pub radii_m: Vec<f64>,
+    /// Largest distance of a sphere from the line through the first and the last, over its length.
+    pub bend: f64,
+    /// Objects by distance from the line, nearest first: id, distance (m), radius of the sphere there (m).
+    pub objects_by_distance: Vec<(String, f64, f64)>,
+}
+
+/// The numbers behind Fig. 4.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ShapeSpace {
+    /// Ids in the order of the table.
+    pub ids: Vec<String>,
+    /// d(f_i, f_j) = ‖β_i − β_j‖, metres.
+    pub distances_m: Vec<Vec<f64>>,
+    /// How S7 and S8 lie to the four deformations.
+    pub passings: Vec<Passing>,
+    /// The spheres.
+    pub spheres: Option<SphereLine>,
+    /// Share of the squared distances that two and three dimensions keep.
+    pub explained: [f64; 2],
+    /// All points with their coordinates.
+    pub places: Vec<Place>,
+}
