@@ -16,10 +16,10 @@ pub struct Args {
     /// (metres)
     #[arg(long, value_name = "builtin|FOLDER", default_value = "builtin", value_parser = object_source)]
     pub objects: ObjectSource,
-    /// Use these objects alone, by id: S1 to S12, or names of files without .ply
+    /// Use only these objects, by id: S1 to S12, or names of files without .ply
     #[arg(long, value_name = "ID", value_delimiter = ',')]
     pub only: Vec<String>,
-    /// How much to compute: a few seconds' worth, or all that the paper did
+    /// How much to compute: a few seconds, or everything that the paper computed
     #[arg(long, value_enum, default_value = "small")]
     pub scale: Scale,
     /// Seed of all random numbers: the same seed gives the same numbers on any number of threads

@@ -6,11 +6,11 @@ use shape::{PointCloud, RadialShape, Surface as _};
 use space::point::contacts_on;
 use sph::{Coefficients, Direction, batch};
 
-/// Circles of latitude and points a circle of a drawn mesh.
+/// Circles of latitude of a drawn mesh, and points per circle.
 const MESH: (usize, usize) = (48, 72);
 /// Length of a drawn normal, millimetres.
 const NORMAL_LENGTH: f64 = 30.0;
-/// Points of a drawn cloud, about.
+/// Approximate number of points of a drawn cloud.
 const CLOUD_POINTS: usize = 2_500;
 
 fn millimetres(v: &Vector3<f64>) -> [f64; 3] {
@@ -68,7 +68,7 @@ pub fn contacts(shape: &RadialShape, directions: &[Direction]) -> Item {
     })
 }
 
-/// The way of one contact over a surface.
+/// The path of one contact over a surface.
 pub fn track(shape: &RadialShape, directions: impl Iterator<Item = Direction>) -> Item {
     Item::Lines(Lines {
         name: String::new(),

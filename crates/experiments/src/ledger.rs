@@ -1,4 +1,4 @@
-//! The jobs of a long experiment: a run that was interrupted goes on where it was.
+//! The jobs of a long experiment, resumed after an interruption.
 //!
 //! Finished jobs are kept in a [`run::Ledger`] per phase, in a hidden folder beside the results.
 
@@ -19,12 +19,12 @@ use crate::error::ExperimentError;
 use crate::pipeline::FittedSet;
 use crate::run::Run;
 
-/// Where the lines of an experiment are until its result is written.
+/// The folder in which the finished jobs of an experiment are kept until its result is written.
 pub fn folder(out: &Path, experiment: &str) -> PathBuf {
     out.join(format!(".{experiment}.unfinished"))
 }
 
-/// Time that both schemes took, summed over threads, seconds.
+/// Time of both schemes, summed over threads, seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ThreadSeconds {
     /// The paper's.

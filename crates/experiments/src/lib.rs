@@ -1,7 +1,22 @@
-//! The experiments of the paper, one function a section and one binary around each.
+//! The experiments of the paper "Grasp Moduli Spaces and Spherical Harmonics" (ICRA 2014), and the
+//! program of each.
 //!
-//! Every binary writes `OUT/<binary>.json` with the paper's numbers beside ours, and prints a short
-//! table. The constants of the paper are in [`paper`] alone.
+//! Every section of the paper is a module of [`sections`] with three parts: findings (the data), a
+//! measurement that computes them, and figures drawn from them. Its program writes
+//! `OUT/<program>.json` with the numbers of the paper beside ours, and `OUT/<program>.html` with the
+//! figures, and prints a short table. The constants of the paper are in [`paper`].
+//!
+//! A measurement can be called from a program too:
+//!
+//! ```
+//! use experiments::sections::eigenfunctions::{Settings, measure};
+//!
+//! // Sec. II-C: all Y_{l,m} up to degree 6, at 20 directions and the poles.
+//! let found = measure(&Settings { degree: 6, directions: 20 });
+//! assert_eq!(found.functions, 49);
+//! assert!(found.orthonormality_error < 1e-13);
+//! assert!(found.laplacian_error < 1e-13);
+//! ```
 
 pub mod args;
 pub mod drawing;

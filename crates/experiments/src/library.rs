@@ -49,8 +49,10 @@ impl LibrarySettings {
 
 /// Fits S1 to S12 of the catalogue and keeps the best hand grasps on each, spread out.
 ///
-/// Uses the current pool of threads; the result does not depend on their number. Errors: an object
-/// that cannot be fitted, and a hand or convention that cannot be used.
+/// Uses the current pool of threads; the result does not depend on their number.
+///
+/// # Errors
+/// An object cannot be fitted, or the hand or the convention cannot be used.
 pub fn build(settings: &LibrarySettings) -> Result<LibraryRecord, ExperimentError> {
     let set = fit_all(
         Objects::load(&ObjectSource::Builtin, settings.seed)?,
@@ -99,8 +101,8 @@ fn entry(fitted: &FittedObject, ranked: &[HandGrasp], settings: &LibrarySettings
     }
 }
 
-/// The first grasps of a ranked list, at most `count`, leaving out those that are nearer than
-/// `least` to one before.
+/// The first grasps of a ranked list, at most `count`, without those nearer than `least` to an
+/// earlier one.
 fn spread_out(ranked: &[HandGrasp], radius: f64, least: f64, count: usize) -> Vec<&HandGrasp> {
     let mut kept: Vec<&HandGrasp> = Vec::with_capacity(count);
     for grasp in ranked {
@@ -117,8 +119,10 @@ fn spread_out(ranked: &[HandGrasp], radius: f64, least: f64, count: usize) -> Ve
     kept
 }
 
-/// d(g, g′) of Sec. III-C with lengths measured in `radius`, over all orders of the contacts: grasps
-/// that differ only in which finger is where are the same to an object. None for different counts.
+/// The least d(g, g′) of Sec. III-C over all orders of the contacts, with lengths divided by
+/// `radius`; `None` for different numbers of contacts.
+///
+/// Grasps that differ only in the order of the fingers are the same to an object.
 pub fn separation(a: &[Contact], b: &[Contact], radius: f64) -> Option<f64> {
     let scaled = |order: &mut dyn Iterator<Item = &Contact>| Grasp {
         contacts: order
@@ -138,7 +142,7 @@ pub fn separation(a: &[Contact], b: &[Contact], radius: f64) -> Option<f64> {
     distances.into_iter().min_by(f64::total_cmp)
 }
 
-/// All orders of 0 … count−1.
+/// All permutations of 0 … count−1.
 fn orders(count: usize) -> Vec<Vec<usize>> {
     let mut all = vec![Vec::new()];
     for last in 0..count {

@@ -34,7 +34,7 @@ pub struct ObjectCloud {
     pub number: usize,
     /// "S5", or the file's name without its ending.
     pub id: String,
-    /// What it is; the id again for files.
+    /// Name for people; the id again for files.
     pub name: String,
     /// Its points.
     pub cloud: PointCloud,
@@ -65,8 +65,10 @@ pub struct Objects {
 impl Objects {
     /// Scans the catalogue with a seed, or reads a folder.
     ///
-    /// A file that cannot be read or is no cloud is listed among the refused. Errors: a folder
-    /// that cannot be listed.
+    /// A file that cannot be read or is not a cloud is listed among the refused.
+    ///
+    /// # Errors
+    /// The folder cannot be listed.
     pub fn load(source: &ObjectSource, seed: u64) -> Result<Self, ExperimentError> {
         let found: Vec<Result<ObjectCloud, Refused>> = match source {
             ObjectSource::Builtin => catalogue::library_objects()
@@ -97,7 +99,8 @@ impl Objects {
 
     /// Keeps the objects of the given ids, which keep their numbers; all of them for no ids.
     ///
-    /// Errors: an id that is neither a cloud nor a refused object.
+    /// # Errors
+    /// An id is neither that of a cloud nor that of a refused object.
     pub fn only(mut self, ids: &[String]) -> Result<Self, ExperimentError> {
         let all = self.clouds.iter().map(|c| &c.id);
         let known: Vec<String> = all

@@ -10,15 +10,15 @@ use crate::table::Table;
 /// The results of a section, for its files and for people.
 #[derive(Clone, Debug)]
 pub struct Results {
-    /// Which objects it ran on, and which were refused.
+    /// The objects used, and those that were refused.
     pub objects: Value,
-    /// What the paper says.
+    /// The numbers of the paper.
     pub paper: Value,
-    /// What came out here.
+    /// Our numbers.
     pub ours: Value,
-    /// The main numbers for people.
+    /// The main numbers, as a table for people.
     pub table: Table,
-    /// Pictures.
+    /// The figures.
     pub figures: Vec<report::Section>,
 }
 

@@ -26,11 +26,11 @@ pub const SPHERES: usize = 30;
 pub const SPHERE_RADII: (f64, f64) = (0.03, 0.06);
 /// The object that is deformed (Sec. IV-A).
 pub const DEFORMED_FROM: usize = 5;
-/// What it is deformed into.
+/// The objects into which it is deformed (Sec. IV-A).
 pub const DEFORMED_TO: [usize; 4] = [1, 2, 10, 11];
-/// Whose neighbourhood these deformations pass.
+/// The objects near which these deformations pass (Sec. IV-A).
 pub const PASSED_BY_DEFORMATIONS: [usize; 2] = [7, 8];
-/// What the sequence of spheres passes.
+/// The objects near which the sequence of spheres passes (Sec. IV-A).
 pub const PASSED_BY_SPHERES: [usize; 2] = [11, 12];
 
 /// Positions of β that noise is added to in the top row of Fig. 5: β_0 … β_9.
@@ -40,7 +40,7 @@ pub const FINE_BAND: Range<usize> = 499..600;
 /// Contacts of a grasp (Sec. IV-B and on).
 pub const CONTACTS: usize = 3;
 
-/// Random hand poses a surface (Sec. IV-C).
+/// Random hand poses per surface (Sec. IV-C).
 pub const HAND_POSES: usize = 1_400;
 /// Vertices of the mesh for collisions (Sec. IV-C).
 pub const COLLISION_VERTICES: usize = 10_000;
@@ -61,19 +61,19 @@ pub const ASCENT_STEPS: usize = 1_000;
 pub const ASCENT_EXAMPLES: [(f64, f64); 4] =
     [(0.51, 0.72), (0.54, 0.64), (0.62, 0.70), (0.62, 0.67)];
 
-/// Surfaces γ(0), γ(0.1), …, γ(1) on the way of a transfer (Sec. IV-E).
+/// Stations γ(0), γ(0.1), …, γ(1) of a transfer (Sec. IV-E).
 pub const TRANSFER_STATIONS: usize = 11;
 /// Steps of the ascent on each of them (Sec. IV-E).
 pub const TRANSFER_STEPS: usize = 100;
-/// Transfers a starting surface (Sec. IV-E).
+/// Transfers per source surface (Sec. IV-E).
 pub const TRANSFERS_PER_SOURCE: usize = 110;
 /// All transfers (Sec. IV-E).
 pub const TRANSFERS: usize = 1_320;
 /// A grasp of less quality counts as unstable (Sec. IV-E).
 pub const UNSTABLE_BELOW: f64 = 0.01;
-/// Unstable ones among all transfers (Sec. IV-E).
+/// Unstable transfers among all of them (Sec. IV-E).
 pub const UNSTABLE_TRANSFERS: usize = 9;
-/// Unstable transfers by starting surface; all others had none (Sec. IV-E).
+/// Unstable transfers by source surface; all other surfaces had none (Sec. IV-E).
 pub const UNSTABLE_BY_SOURCE: [(usize, usize); 5] = [(2, 2), (4, 1), (5, 1), (9, 4), (10, 1)];
 
 /// The ascent of Sec. IV-D with some number of steps.
@@ -85,7 +85,7 @@ pub fn ascent(steps: usize) -> PaperAscent {
     }
 }
 
-/// Unstable transfers that the paper counts from starting surface S_i.
+/// Unstable transfers that the paper counts from source surface S_i.
 pub fn unstable_from(source: usize) -> usize {
     UNSTABLE_BY_SOURCE
         .iter()

@@ -100,7 +100,8 @@ fn describe(fitted: &FittedObject) -> Value {
 
 /// Loads the run's objects, all or those of some numbers, and fits them in parallel.
 ///
-/// Errors: fewer than `needed` of them have a surface.
+/// # Errors
+/// Fewer than `needed` of them have a surface.
 pub fn fitted_objects(
     run: &Run,
     numbers: Option<&[usize]>,
@@ -198,7 +199,8 @@ pub fn directions(grasps: &[Vec<HandGrasp>]) -> Vec<Vec<Vec<Direction>>> {
 
 /// The best hand grasps on every object: at most `count` each, of `poses` poses each.
 ///
-/// Errors: no object has any.
+/// # Errors
+/// No object has a stable grasp.
 pub fn best_grasps(
     run: &Run,
     set: &FittedSet,

@@ -36,7 +36,7 @@ pub fn main(name: &'static str, about: &'static str, section: Experiment) -> Exi
     }
 }
 
-/// Says on stderr why a program of this name stops, and gives its exit code.
+/// Prints on stderr why a program of this name stops, and returns its exit code.
 pub fn fail(name: &str, error: &ExperimentError) -> ExitCode {
     let _ = writeln!(std::io::stderr(), "{name}: {error}");
     ExitCode::from(error.exit_code())

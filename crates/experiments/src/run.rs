@@ -1,4 +1,4 @@
-//! One run of an experiment: its settings, as values.
+//! The settings of one run of an experiment.
 
 use std::path::Path;
 
@@ -37,7 +37,7 @@ impl Scale {
     }
 }
 
-/// Everything that a section is told.
+/// The settings of a run, for every section.
 pub struct Run<'a> {
     /// Where the objects come from.
     pub objects: ObjectSource,
@@ -53,7 +53,7 @@ pub struct Run<'a> {
     pub fit: FitSettings,
     /// Folder where long computations keep what is done, see [`crate::ledger`].
     pub keep: Option<&'a Path>,
-    /// Hears what is being done.
+    /// Is called with a line of text when a step begins.
     pub progress: &'a (dyn Fn(&str) + Sync),
 }
 
@@ -82,13 +82,13 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Tells what is being done.
+    /// Reports that a step begins.
     pub fn say(&self, what: &str) {
         (self.progress)(what);
     }
 }
 
-/// What random numbers are for; no two purposes share any.
+/// The purpose of random numbers; no two purposes share any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// Hand poses around an object.

@@ -5,19 +5,19 @@ use serde::Serialize;
 /// Number, mean and spread of a list.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Summary {
-    /// How many.
+    /// Number of values.
     pub count: usize,
-    /// Their mean.
+    /// Mean.
     pub mean: f64,
-    /// The middle one.
+    /// Median.
     pub median: f64,
-    /// The least.
+    /// Least value.
     pub least: f64,
-    /// The greatest.
+    /// Greatest value.
     pub greatest: f64,
 }
 
-/// A summary; none of an empty list.
+/// A summary; `None` for an empty list.
 pub fn summary(values: &[f64]) -> Option<Summary> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -33,12 +33,12 @@ pub fn summary(values: &[f64]) -> Option<Summary> {
     })
 }
 
-/// The mean; none of an empty list.
+/// The mean; `None` for an empty list.
 pub fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// √(mean of squares); 0 of an empty list.
+/// √(mean of squares); 0 for an empty list.
 pub fn root_mean_square(values: impl IntoIterator<Item = f64>) -> f64 {
     let (squares, count) = values
         .into_iter()
@@ -46,12 +46,19 @@ pub fn root_mean_square(values: impl IntoIterator<Item = f64>) -> f64 {
     (squares / count.max(1) as f64).sqrt()
 }
 
-/// Which share of a whole; none of nothing.
+/// The share part / whole; `None` when the whole is 0.
 pub fn share(part: usize, whole: usize) -> Option<f64> {
     (whole > 0).then(|| part as f64 / whole as f64)
 }
 
-/// Spearman's rank correlation, ties at their mean rank; none where a list is constant or empty.
+/// Spearman's rank correlation, with ties at their mean rank; `None` where a list is constant or
+/// empty.
+///
+/// ```
+/// use experiments::statistics::rank_correlation;
+///
+/// assert_eq!(rank_correlation(&[1.0, 2.0, 9.0], &[0.1, 0.3, 0.4]), Some(1.0));
+/// ```
 pub fn rank_correlation(a: &[f64], b: &[f64]) -> Option<f64> {
     let (a, b) = (ranks(a), ranks(b));
     let (mean_a, mean_b) = (mean(&a)?, mean(&b)?);

@@ -13,7 +13,10 @@ use crate::error::ExperimentError;
 use crate::output::Results;
 use crate::run::Run;
 
-/// Runs the section.
+/// Runs the section: the measurement, then the table and the figures.
+///
+/// # Errors
+/// Too few objects can be used, or a computation fails.
 pub fn run(run: &Run) -> Result<Results, ExperimentError> {
     let settings = Settings::of(run);
     run.say(&format!("eigenfunctions up to degree {}", settings.degree));

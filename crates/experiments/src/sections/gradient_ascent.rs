@@ -17,7 +17,10 @@ use crate::paper;
 use crate::pipeline::{best_grasps, fitted_objects};
 use crate::run::Run;
 
-/// Runs the section.
+/// Runs the section: the measurement, then the table and the figures.
+///
+/// # Errors
+/// Too few objects can be used, or a computation fails.
 pub fn run(run: &Run) -> Result<Results, ExperimentError> {
     let settings = Settings::of(run);
     let set = fitted_objects(run, None, 1)?;

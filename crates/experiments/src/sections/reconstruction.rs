@@ -15,7 +15,10 @@ use crate::output::Results;
 use crate::paper;
 use crate::run::Run;
 
-/// Runs the section.
+/// Runs the section: the measurement, then the table and the figures.
+///
+/// # Errors
+/// Too few objects can be used, or a computation fails.
 pub fn run(run: &Run) -> Result<Results, ExperimentError> {
     let settings = Settings::of(run);
     let mut objects = Objects::load(&run.objects, run.seed)?.only(run.only)?;

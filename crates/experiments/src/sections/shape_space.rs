@@ -15,7 +15,10 @@ use crate::paper;
 use crate::pipeline::fitted_objects;
 use crate::run::Run;
 
-/// Runs the section.
+/// Runs the section: the measurement, then the table and the figures.
+///
+/// # Errors
+/// Too few objects can be used, or a computation fails.
 pub fn run(run: &Run) -> Result<Results, ExperimentError> {
     let set = fitted_objects(run, None, 2)?;
     let ours = measure(run, &Settings::of(run), &set)?;

@@ -5,12 +5,12 @@ use serde::Serialize;
 use crate::paper;
 use crate::run::Run;
 
-/// What is computed.
+/// How much is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// All Y_{l,m} up to this degree are tested.
     pub degree: usize,
-    /// Directions at which they are looked at, beside the poles.
+    /// Directions at which they are evaluated, besides the poles.
     pub directions: usize,
 }
 

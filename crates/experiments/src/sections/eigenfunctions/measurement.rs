@@ -8,7 +8,7 @@ use sph::{Basis, Coefficients, Direction, SphericalCoords, index};
 
 use super::findings::{Eigenfunctions, Settings};
 
-/// Tests all functions up to the settings's degree.
+/// Measures the errors of all functions up to the degree of the settings.
 pub fn measure(settings: &Settings) -> Eigenfunctions {
     let basis = Basis::new(settings.degree);
     let mut directions = even_directions(settings.directions);
@@ -127,8 +127,8 @@ fn difference_error(l: usize, directions: &[Direction]) -> f64 {
 
 /// Y_{l,m} as Sec. II-C writes it: c_{l,m}, P_l^{|m|}(cos θ) without phase, sin or cos of |m|φ.
 ///
-/// Factorials and unnormalised Legendre polynomials overflow beyond l = 80 or so: a reference,
-/// not a way to compute.
+/// This is a reference for tests: factorials and unnormalised Legendre polynomials overflow beyond
+/// about l = 80.
 pub fn paper_formula(l: usize, m: isize, p: &Direction) -> f64 {
     let SphericalCoords { theta, phi } = SphericalCoords::from_direction(p);
     let order = m.unsigned_abs();

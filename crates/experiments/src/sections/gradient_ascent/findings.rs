@@ -9,12 +9,12 @@ use crate::paper;
 use crate::run::Run;
 use crate::statistics::{mean, share};
 
-/// What is computed.
+/// How much is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Hand poses from which G_i is taken.
     pub poses: usize,
-    /// Grasps of G_i that climb.
+    /// Grasps of G_i from which the ascents start.
     pub grasps: usize,
     /// The ascent.
     pub ascent: PaperAscent,
@@ -48,9 +48,9 @@ pub struct PaperClimb {
     pub initial: f64,
     /// Q at the end.
     pub last: f64,
-    /// The largest Q on the way.
+    /// The largest Q of all states.
     pub highest: f64,
-    /// Qualities computed.
+    /// Quality evaluations.
     pub evaluations: usize,
     /// Largest angle between where a contact began and where it ended, radians.
     pub moved_rad: f64,
@@ -61,7 +61,7 @@ pub struct PaperClimb {
 pub struct OurClimb {
     /// Q at the end.
     pub last: f64,
-    /// Qualities computed.
+    /// Quality evaluations.
     pub evaluations: usize,
     /// Slope of Q left at the end, per radian.
     pub stationarity: f64,
@@ -76,7 +76,7 @@ pub struct ObjectClimbs {
     pub climbs: Vec<Climb>,
 }
 
-/// All ascents in short.
+/// Numbers over all ascents.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Overall {
     /// Ascents.
@@ -91,7 +91,7 @@ pub struct Overall {
     pub mean_final: Option<f64>,
     /// Mean change of Q.
     pub mean_change: Option<f64>,
-    /// Mean of Q lost between the highest state and the end: what the fixed step throws away.
+    /// Mean of Q lost between the highest state and the end, by the fixed step length.
     pub mean_lost_from_highest: Option<f64>,
     /// Our ascent from the same starts: share that ended higher.
     pub ours_share_improved: Option<f64>,
@@ -101,11 +101,11 @@ pub struct Overall {
     pub ours_mean_final: Option<f64>,
     /// Largest slope of Q left at an end of ours, per radian.
     pub ours_largest_stationarity: f64,
-    /// Qualities that the paper's ascent computes for one of ours.
+    /// Quality evaluations of the paper's ascent per evaluation of ours.
     pub evaluations_ratio: Option<f64>,
 }
 
-/// All ascents in short.
+/// Numbers over all ascents.
 pub fn overall(climbs: &[Climb]) -> Overall {
     let mean_of = |pick: fn(&Climb) -> f64| mean(&climbs.iter().map(pick).collect::<Vec<_>>());
     let share_of =
@@ -134,7 +134,7 @@ pub fn overall(climbs: &[Climb]) -> Overall {
     }
 }
 
-/// The four ascents that gained most, to stand beside those of Fig. 8.
+/// The four largest improvements, to be compared with those of Fig. 8.
 pub(super) fn examples(climbs: &[Climb]) -> Vec<(f64, f64)> {
     let mut sorted: Vec<&Climb> = climbs.iter().collect();
     let gain = |c: &Climb| c.paper.last - c.paper.initial;
@@ -146,7 +146,7 @@ pub(super) fn examples(climbs: &[Climb]) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// One ascent as it is to be drawn.
+/// One ascent with its states, to be drawn.
 pub struct DrawnClimb {
     /// The object and the change of quality.
     pub label: String,

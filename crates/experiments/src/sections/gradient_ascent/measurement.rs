@@ -11,7 +11,10 @@ use crate::paper;
 use crate::pipeline::{FittedObject, FittedSet, directions};
 use crate::run::Run;
 
-/// Climbs from given grasps of every object: all ascents of the paper, then all of ours.
+/// Ascents from given grasps of every object: all ascents of the paper, then all of ours.
+///
+/// # Errors
+/// A quality cannot be computed, or finished ascents cannot be kept.
 pub fn measure(
     run: &Run,
     settings: &Settings,
@@ -102,7 +105,7 @@ fn climb(
     })
 }
 
-/// The ascents that gained most on four objects and the one that gained least, to be drawn.
+/// The ascents to be drawn: the largest improvements on four objects, and the smallest of all.
 pub(super) fn drawn(
     run: &Run,
     settings: &Settings,
@@ -132,7 +135,7 @@ pub(super) fn drawn(
         .collect()
 }
 
-/// An ascent once more, with every tenth state.
+/// Repeats an ascent and keeps every tenth state.
 fn draw(
     run: &Run,
     settings: &Settings,

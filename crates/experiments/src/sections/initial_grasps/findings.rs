@@ -8,10 +8,10 @@ use crate::paper;
 use crate::run::Run;
 use crate::statistics::Summary;
 
-/// What is computed.
+/// How much is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// Poses a surface.
+    /// Hand poses per surface.
     pub poses: usize,
 }
 
@@ -31,13 +31,13 @@ pub struct ObjectGrasps {
     pub id: String,
     /// Poses tried.
     pub poses: usize,
-    /// Stable grasps: quality at least 0.01 under the paper's convention, force-closed under others.
+    /// Stable grasps, by the threshold of the convention.
     pub stable: usize,
-    /// Closed on the object, but of less quality.
+    /// Grasps that were made and are not stable.
     pub unstable: usize,
     /// Rejected poses by reason.
     pub rejected: Map<String, Value>,
-    /// Stable grasps to be expected of as many poses as in the paper.
+    /// Stable grasps scaled to the number of poses of the paper.
     pub stable_of_1400: f64,
     /// Stable grasps by pre-shape: parallel, spread.
     pub stable_by_preshape: Vec<usize>,
@@ -46,23 +46,23 @@ pub struct ObjectGrasps {
     /// Contacts of the best grasp.
     #[serde(skip)]
     pub best_contacts: Option<Vec<Direction>>,
-    /// G_i in short.
+    /// Summary of G_i.
     pub best: Option<Summary>,
-    /// Ĝ_i, the best 10, in short.
+    /// Summary of Ĝ_i, the best 10.
     pub very_best: Option<Summary>,
     /// The same grasps under every convention.
     pub conventions: Vec<UnderConvention>,
 }
 
-/// What a convention says of the stable grasps that were ranked under the run's.
+/// The stable grasps of the run's convention, measured under another one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct UnderConvention {
     /// The convention.
     pub name: String,
-    /// Quality of the stable grasps; 0 where it calls one open.
+    /// Quality of the stable grasps; 0 for a grasp that is not closed.
     pub quality: Option<Summary>,
-    /// Share that it calls force-closed.
+    /// Share that is closed.
     pub share_closed: Option<f64>,
-    /// Spearman's correlation of its ranking with the run's.
+    /// Spearman's rank correlation with the qualities of the run's convention.
     pub rank_correlation: Option<f64>,
 }

@@ -1,4 +1,4 @@
-//! How well each fit does.
+//! How well each surface fits.
 
 use serde::Serialize;
 use shape::RadialShape;
@@ -6,7 +6,7 @@ use shape::RadialShape;
 use crate::paper;
 use crate::run::Run;
 
-/// What is computed.
+/// How much is computed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// Numbers of the objects; all when absent.
@@ -30,7 +30,7 @@ impl Settings {
     }
 }
 
-/// How well one fit does. Lengths in metres.
+/// How well one surface fits its cloud. Lengths in metres.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Reconstruction {
     /// The object.
@@ -47,7 +47,7 @@ pub struct Reconstruction {
     pub rms_m: f64,
     /// Largest residual.
     pub max_abs_m: f64,
-    /// Root mean square residual at the half of the points that another fit did not see.
+    /// Root mean square residual, at one half of the points, of a fit to the other half.
     pub held_out_rms_m: Option<f64>,
     /// Root mean square distance of the surface from the true one, where that is known.
     pub true_rms_m: Option<f64>,
@@ -58,7 +58,7 @@ pub struct Reconstruction {
 /// A fit with its surface, where that is in M^rad.
 #[derive(Clone, Debug)]
 pub struct Fitted {
-    /// How well it does.
+    /// How well it fits.
     pub record: Reconstruction,
     /// The surface, seen from the mean of the cloud.
     pub shape: Option<RadialShape>,

@@ -90,7 +90,7 @@ fn fits_at(
     Ok(fits)
 }
 
-/// The normal equations of a cloud at one degree, with what they were made of.
+/// The normal equations of a cloud at one degree, with their samples.
 struct System<'a> {
     samples: Samples<'a>,
     gram: Gram,
@@ -108,7 +108,7 @@ impl<'a> System<'a> {
         })
     }
 
-    /// β and λ; none where the points do not determine β.
+    /// β and λ; `None` where the points do not determine β.
     fn solve(&self, penalised: bool) -> Result<Option<(Coefficients, f64)>, RegressionError> {
         let penalty = if penalised {
             self.gram.choose_penalty(PENALTY_POWER)?

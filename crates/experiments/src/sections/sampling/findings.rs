@@ -6,7 +6,7 @@ use space::ModuliPoint;
 
 use crate::run::Run;
 
-/// What is computed.
+/// How much is computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Samples of each object, band and deviation.
@@ -56,11 +56,11 @@ pub struct Noise {
     pub roughness: Option<f64>,
     /// Mean of the root mean square slope of the change, √(Σ l(l+1) δβ²/4π) over the mean radius.
     pub rms_slope_change: Option<f64>,
-    /// Share of the samples' three random contacts that are force-closed.
+    /// Share of the samples in M^rad whose three random contacts are closed.
     pub share_force_closed: Option<f64>,
 }
 
-/// Samples of one band, as they are to be drawn.
+/// Samples of one band, to be drawn.
 pub struct DrawnBand {
     /// Which coefficients, and the deviation.
     pub title: String,

@@ -118,8 +118,8 @@ fn collect(name: &'static str, band: &Range<usize>, sigma: f64, samples: &[Sampl
     }
 }
 
-/// Samples of one object at the least deviation of each band, to be drawn; those that leave M^rad
-/// are passed over.
+/// Samples to be drawn: one object, at the least deviation of each band. Samples outside M^rad are
+/// left out.
 pub(super) fn drawn_bands(run: &Run, settings: &Settings, set: &FittedSet) -> Vec<DrawnBand> {
     let Some(object) = set.get(paper::DEFORMED_FROM).or(set.objects.last()) else {
         return Vec::new();

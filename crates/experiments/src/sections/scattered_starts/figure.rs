@@ -42,7 +42,7 @@ pub(super) fn table(
     table
 }
 
-/// One point a transfer; what lies above the diagonal is won by ours.
+/// One point per transfer. Above the diagonal our transfer reaches more.
 pub(super) fn figures(compared: &[Compared]) -> Vec<Section> {
     let series = |name: &str, pick: fn(&Compared) -> f64| {
         let points = compared.iter().map(|c| [c.runs.best(), pick(c)]).collect();

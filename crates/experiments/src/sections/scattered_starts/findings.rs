@@ -1,4 +1,4 @@
-//! What both reach.
+//! The qualities that both schemes reach.
 
 use serde::{Deserialize, Serialize};
 use space::PaperAscent;
@@ -12,7 +12,7 @@ pub(super) const SPREAD: f64 = 0.3;
 /// Differences of Q that are told apart in the result.
 const MARGINS: [f64; 3] = [0.0, 1e-3, 1e-2];
 
-/// What is computed.
+/// How much is computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Numbers of the objects; all when absent.
@@ -46,9 +46,9 @@ impl Settings {
 /// One transfer, and what the runs reach.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Compared {
-    /// Where it came from.
+    /// Id of the source.
     pub from: String,
-    /// Where it went.
+    /// Id of the target.
     pub to: String,
     /// Its rank among the grasps of its source, from 0.
     pub rank: usize,
@@ -59,7 +59,7 @@ pub struct Compared {
     pub ours: f64,
     /// Our transfer when asked to be thorough.
     pub thorough: f64,
-    /// Qualities that the thorough transfer computed.
+    /// Quality evaluations of the thorough transfer.
     pub thorough_evaluations: usize,
 }
 
@@ -68,7 +68,7 @@ pub struct Compared {
 pub struct Runs {
     /// Q at every end.
     pub ends: Vec<f64>,
-    /// Qualities that all runs computed.
+    /// Quality evaluations of all runs.
     pub evaluations: usize,
 }
 

@@ -1,4 +1,4 @@
-//! A sample of transfers, carried by both.
+//! A sample of transfers, done by both schemes.
 
 use hand::HandGrasp;
 use rand::seq::index;
@@ -21,7 +21,10 @@ struct Ours {
     thorough_evaluations: usize,
 }
 
-/// Draws transfers, and carries each by both.
+/// Draws a sample of transfers and does each by both schemes.
+///
+/// # Errors
+/// A transfer or an ascent fails, or finished results cannot be kept.
 pub fn measure(
     run: &Run,
     settings: &Settings,

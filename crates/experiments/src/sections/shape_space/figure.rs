@@ -96,7 +96,7 @@ fn of_kind<'a>(found: &'a ShapeSpace, kind: &'a str) -> impl Iterator<Item = &'a
     found.places.iter().filter(move |p| p.kind == kind)
 }
 
-/// Ways of deformation: a name, and the places on it with the ends.
+/// Deformations: a name, and the places on it with the ends.
 fn ways(found: &ShapeSpace) -> Vec<(String, Vec<&Place>)> {
     let mut ways: Vec<(String, Vec<&Place>)> = Vec::new();
     for place in of_kind(found, "deformation") {

@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::paper;
 use crate::run::Run;
 
-/// What is computed.
+/// How much is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// Number of spheres.
@@ -38,22 +38,22 @@ pub struct Place {
     pub coordinates: Vec<f64>,
 }
 
-/// How near a shape is to the straight way between two others.
+/// How near a shape is to the straight line between two others in the shape space.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Passing {
     /// The shape.
     pub id: String,
-    /// Start of the way.
+    /// Id of the start of the line.
     pub from: String,
-    /// End of the way.
+    /// Id of the end of the line.
     pub to: String,
-    /// Where on the way it is nearest, 0 at the start and 1 at the end.
+    /// Parameter of the nearest point of the line, 0 at the start and 1 at the end.
     pub t: f64,
-    /// Distance from that point of the way, metres.
+    /// Distance from that point, metres.
     pub distance_m: f64,
     /// That distance over the distance from the nearer end.
     pub distance_over_nearer_end: f64,
-    /// Whether there the way is nearer to this shape than to any other object, its ends included.
+    /// Whether that point is nearer to this shape than to any other object, the ends included.
     pub nearest_object_there: bool,
 }
 
@@ -75,7 +75,7 @@ pub struct ShapeSpace {
     pub ids: Vec<String>,
     /// d(f_i, f_j) = ‖β_i − β_j‖, metres.
     pub distances_m: Vec<Vec<f64>>,
-    /// How S7 and S8 lie to the four deformations.
+    /// How near S7 and S8 are to the four deformations.
     pub passings: Vec<Passing>,
     /// The spheres.
     pub spheres: Option<SphereLine>,

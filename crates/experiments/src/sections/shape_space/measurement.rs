@@ -86,7 +86,7 @@ fn ways(set: &FittedSet) -> Vec<(&FittedObject, &FittedObject)> {
     to.map(|to| (from, to)).collect()
 }
 
-/// Shapes strictly between the ends of every way.
+/// Shapes strictly between the ends of every deformation.
 fn deformations(
     set: &FittedSet,
     steps: usize,
@@ -114,7 +114,7 @@ fn explained(embedding: &Embedding, dimensions: usize) -> f64 {
     sum(&all[..dimensions.min(all.len())]) / sum(all)
 }
 
-/// Where the line through two coefficient vectors is nearest to a third: the parameter.
+/// Parameter at which the line through two coefficient vectors is nearest to a third.
 fn foot(beta: &Coefficients, from: &Coefficients, to: &Coefficients) -> f64 {
     let along = Coefficients::combination([(1.0, to), (-1.0, from)]);
     let towards = Coefficients::combination([(1.0, beta), (-1.0, from)]);

@@ -8,14 +8,14 @@ use sph::Direction;
 use crate::paper;
 use crate::run::Run;
 
-/// What is computed.
+/// How much is computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Numbers of the objects; all when absent.
     pub objects: Option<Vec<usize>>,
     /// Hand poses from which Ĝ_i is taken.
     pub poses: usize,
-    /// Grasps of Ĝ_i that are carried.
+    /// Grasps of Ĝ_i that are transferred.
     pub grasps: usize,
     /// The transfer.
     pub transfer: PaperTransfer,
@@ -37,12 +37,12 @@ impl Settings {
     }
 }
 
-/// One grasp carried from one object to another.
+/// One grasp transferred from one object to another.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Carried {
-    /// Where it came from.
+    /// Id of the source.
     pub from: String,
-    /// Where it went.
+    /// Id of the target.
     pub to: String,
     /// Its rank among the grasps of its source, from 0.
     pub rank: usize,
@@ -62,7 +62,7 @@ pub struct PaperCarried {
     pub last: f64,
     /// Q on the target with θ and φ kept.
     pub naive: f64,
-    /// Qualities computed.
+    /// Quality evaluations.
     pub evaluations: usize,
 }
 
@@ -71,24 +71,24 @@ pub struct PaperCarried {
 pub struct OurCarried {
     /// Q on the target.
     pub last: f64,
-    /// Qualities computed.
+    /// Quality evaluations.
     pub evaluations: usize,
     /// Slope of Q left on the target, per radian.
     pub stationarity: Option<f64>,
 }
 
-/// Transfers in short.
+/// Numbers over the transfers from one source, or over all.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Count {
     /// The source; "all" for the sum.
     pub from: String,
     /// Transfers.
     pub transfers: usize,
-    /// Unstable after the paper's transfer: quality below 0.01 (conventions other than the paper's: open).
+    /// Grasps that are not stable after the paper's transfer, by the threshold of the convention.
     pub unstable: usize,
-    /// Unstable after the naive transfer.
+    /// Grasps that are not stable after the naive transfer.
     pub unstable_naive: usize,
-    /// What the paper counts at full scale; none for objects that it does not have.
+    /// The paper's count at full scale; `None` for objects that are not in the paper.
     pub unstable_in_paper: Option<usize>,
     /// Mean of Q on the source.
     pub mean_initial: Option<f64>,
@@ -96,18 +96,18 @@ pub struct Count {
     pub mean_final: Option<f64>,
     /// Mean of Q on the target, naive.
     pub mean_naive: Option<f64>,
-    /// Of quality below 0.01 after our transfer.
+    /// Grasps that are not stable after our transfer.
     pub unstable_ours: usize,
     /// Mean of Q on the target, ours.
     pub mean_ours: Option<f64>,
-    /// Qualities that the paper's transfer computes for one of ours.
+    /// Quality evaluations of the paper's transfer per evaluation of ours.
     pub evaluations_ratio: Option<f64>,
 }
 
-/// One grasp on its way, as it is to be drawn.
+/// One transfer with its stations, to be drawn.
 pub struct DrawnTransfer {
-    /// From where to where.
+    /// Source and target.
     pub title: String,
-    /// Surfaces with the contacts as they leave them, and the quality.
+    /// The surface of each station, with the contacts and the quality at its end.
     pub stations: Vec<(RadialShape, Vec<Direction>, f64)>,
 }

@@ -12,8 +12,11 @@ use crate::pipeline::{FittedSet, directions, transfer_between};
 use crate::run::Run;
 use crate::statistics::{mean, share};
 
-/// Carries the best hand grasps of every object to every other object: by the paper's scheme, then
-/// by ours.
+/// Transfers the best hand grasps of every object to every other object, by the paper's scheme and
+/// then by ours.
+///
+/// # Errors
+/// A transfer fails, or finished transfers cannot be kept.
 pub fn measure(
     run: &Run,
     settings: &Settings,
@@ -55,7 +58,7 @@ pub fn measure(
     Ok((carried, times))
 }
 
-/// Carries all grasps of one source to one target, over the same stations.
+/// Transfers all grasps of one source to one target by the paper's scheme.
 fn carry_as_the_paper(
     settings: &Settings,
     transfer: &Transfer,
@@ -93,7 +96,7 @@ fn carry(
         .collect()
 }
 
-/// The best grasp of the first object that has one on its way to the last object.
+/// The transfer to be drawn: the best grasp of the first object that has one, to the last object.
 pub(super) fn drawn(
     run: &Run,
     settings: &Settings,
