@@ -1,12 +1,13 @@
 //! Results as files.
 
+mod part;
 mod target;
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
 
+use part::Part;
 use target::{Identity, Target};
 
 /// Why a result is not written.
@@ -72,7 +73,9 @@ impl WriteError {
 /// - A symbolic link stays; its target is written.
 /// - A device or a pipe is written to. Where it is the standard output of the program, the bytes
 ///   take their place among what the program prints.
-/// - A failed write leaves nothing behind: no temporary file, and no folder that it made.
+/// - A failed write leaves nothing behind: no temporary file, and no folder that it made. On Linux
+///   the temporary file has no name while it is written, where the file system allows it, so a
+///   program that is killed leaves nothing behind either.
 ///
 /// `inputs` are the files that the program reads.
 ///
@@ -157,69 +160,12 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
     let mut made = MadeFolders::make(folder)?;
-    let mut part = Part::create(folder)?;
-    part.fill(bytes, path)?;
-    part.rename(path)?;
+    Part::write(folder, bytes, path)?.rename(path)?;
     made.keep();
     // The name is on the disk when its folder is. Some file systems cannot flush a folder, and the
     // file itself is complete, so a refusal is no failure.
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
     Ok(())
-}
-
-/// A temporary file, which is removed unless it is renamed.
-struct Part {
-    path: PathBuf,
-    file: Option<File>,
-    renamed: bool,
-}
-
-impl Part {
-    fn create(folder: &Path) -> io::Result<Self> {
-        static COUNT: AtomicU64 = AtomicU64::new(0);
-        let count = COUNT.fetch_add(1, Ordering::Relaxed);
-        let name = format!(".moduli-{}-{count}.part", std::process::id());
-        let path = folder.join(name);
-        let file = OpenOptions::new()
-            .write(true)
-            .create_new(true)
-            .open(&path)?;
-        Ok(Self {
-            path,
-            file: Some(file),
-            renamed: false,
-        })
-    }
-
-    /// Writes everything, with the permissions of the file that will be replaced, to the disk.
-    fn fill(&mut self, bytes: &[u8], replaced: &Path) -> io::Result<()> {
-        let Some(file) = &mut self.file else {
-            return Ok(());
-        };
-        file.write_all(bytes)?;
-        if let Ok(old) = fs::metadata(replaced) {
-            target::keep_owner(file, &old);
-            file.set_permissions(old.permissions())?;
-        }
-        file.sync_all()
-    }
-
-    fn rename(mut self, path: &Path) -> io::Result<()> {
-        self.file = None;
-        fs::rename(&self.path, path)?;
-        self.renamed = true;
-        Ok(())
-    }
-}
-
-impl Drop for Part {
-    fn drop(&mut self) {
-        self.file = None;
-        if !self.renamed {
-            // The first failure is the one to report.
-            let _ = fs::remove_file(&self.path);
-        }
-    }
 }
 
 /// Folders that a write made, the deepest first, which are removed unless the write succeeds.
