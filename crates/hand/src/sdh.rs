@@ -31,3 +31,13 @@ pub fn schunk_sdh() -> Result<Hand, LoadError> {
     let model = load_urdf(SDH_URDF)?;
     Ok(Hand::new(model, &HandSpec::from_toml(SDH_SPEC)?)?)
 }
+
+impl Hand {
+    /// The Schunk SDH that moduli carries, see [`schunk_sdh`].
+    ///
+    /// # Errors
+    /// The carried files are not usable, which a test excludes.
+    pub fn schunk_sdh() -> Result<Self, LoadError> {
+        schunk_sdh()
+    }
+}

@@ -1,0 +1,219 @@
+//! Grasps: a point of (S²)^m with its contacts, quality, origin and hand.
+
+use grasp::{Contact, Epsilon};
+use hand::{Hand, OutcomeCounts};
+use nalgebra::{Isometry3, Point3, UnitVector3};
+use sph::Direction;
+
+use crate::frame::CloudFrame;
+
+/// A grasp on one object.
+///
+/// The point of (S²)^m, a direction per contact, is kept from the moment at which the grasp is found.
+#[derive(Clone, Debug)]
+pub struct Grasp {
+    directions: Vec<Direction>,
+    contacts: Vec<Contact>,
+    quality: f64,
+    interval: Option<(f64, f64)>,
+    source: Source,
+    hand: Option<HandPlacement>,
+    frame: CloudFrame,
+}
+
+/// Where a grasp comes from.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Source {
+    /// Carried over from a known object.
+    Transfer {
+        /// Id and name of that object.
+        from: String,
+        /// Distance of its shape from this object's, metres.
+        shape_distance: f64,
+        /// Quality on that object.
+        source_quality: f64,
+        /// Quality here of the same directions, not improved.
+        naive: f64,
+    },
+    /// A hand was closed on the object.
+    Synthesis {
+        /// Index of the hand's pre-shape from which the fingers closed.
+        preshape: usize,
+    },
+    /// The contacts were given.
+    Given,
+}
+
+/// A hand at a grasp.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HandPlacement {
+    /// Pose of the palm in the centred frame.
+    pub centred_from_palm: Isometry3<f64>,
+    /// Joint values in the order of the hand's driven joints, radians or metres.
+    pub joints: Vec<f64>,
+    /// The same before the fingers close.
+    pub pregrasp_joints: Vec<f64>,
+    /// Largest distance from a contact of this hand to the grasp's own, metres.
+    pub contact_error: f64,
+    /// Whether the contacts are those that were looked for, and not others that the hand makes near
+    /// them.
+    pub met: bool,
+}
+
+impl Grasp {
+    pub(crate) fn new(
+        directions: Vec<Direction>,
+        contacts: Vec<Contact>,
+        quality: f64,
+        source: Source,
+    ) -> Self {
+        Self {
+            directions,
+            contacts,
+            quality,
+            interval: None,
+            source,
+            hand: None,
+            frame: CloudFrame::new(Point3::origin()),
+        }
+    }
+
+    pub(crate) fn with_frame(self, frame: CloudFrame) -> Self {
+        Self { frame, ..self }
+    }
+
+    pub(crate) fn with_hand(self, hand: Option<HandPlacement>) -> Self {
+        Self { hand, ..self }
+    }
+
+    pub(crate) fn set_interval(&mut self, epsilon: &Epsilon) {
+        self.interval = Some((epsilon.lower, epsilon.upper));
+    }
+
+    pub(crate) fn place(&mut self, hand: HandPlacement) {
+        self.hand = Some(hand);
+    }
+
+    /// Takes other contacts, those that a hand makes.
+    pub(crate) fn settle(&mut self, directions: Vec<Direction>, contacts: Vec<Contact>, q: f64) {
+        self.directions = directions;
+        self.contacts = contacts;
+        self.quality = q;
+        self.interval = None;
+    }
+
+    /// Epsilon quality under the convention of the measure that made the grasp; 0 when the grasp is
+    /// not force-closed.
+    pub fn quality(&self) -> f64 {
+        self.quality
+    }
+
+    /// Proved lower bound of the quality.
+    pub fn lower(&self) -> f64 {
+        self.interval.map_or(self.quality, |(lower, _)| lower)
+    }
+
+    /// Proved upper bound of the quality, where it was computed.
+    pub fn upper(&self) -> Option<f64> {
+        self.interval.map(|(_, upper)| upper)
+    }
+
+    /// Directions of the contacts from the centre of the object: the point of (S²)^m.
+    pub fn directions(&self) -> &[Direction] {
+        &self.directions
+    }
+
+    /// The contacts in the centred frame, normals into the object.
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts
+    }
+
+    /// Positions of the contacts in the frame of the cloud, metres.
+    pub fn contacts_in_cloud(&self) -> Vec<Point3<f64>> {
+        let in_cloud = |c: &Contact| self.frame.to_cloud(&c.position);
+        self.contacts.iter().map(in_cloud).collect()
+    }
+
+    /// Unit normals at the contacts, into the object.
+    pub fn inward_normals(&self) -> Vec<UnitVector3<f64>> {
+        self.contacts.iter().map(|c| c.inward_normal).collect()
+    }
+
+    /// Where the grasp comes from.
+    pub fn source(&self) -> &Source {
+        &self.source
+    }
+
+    /// The hand that takes the grasp, where one was found.
+    pub fn hand(&self) -> Option<&HandPlacement> {
+        self.hand.as_ref()
+    }
+
+    /// Pose of the palm in the frame of the cloud, where the grasp has a hand.
+    pub fn palm_in_cloud(&self) -> Option<Isometry3<f64>> {
+        let in_cloud = |hand: &HandPlacement| self.frame.pose_to_cloud(&hand.centred_from_palm);
+        self.hand.as_ref().map(in_cloud)
+    }
+}
+
+/// A list of grasps, and what became of the hand poses that were tried for it.
+#[derive(Clone, Debug, Default)]
+pub struct Grasps {
+    pub(crate) list: Vec<Grasp>,
+    pub(crate) outcomes: Option<OutcomeCounts>,
+}
+
+impl Grasps {
+    /// Adds the grasps of another list.
+    pub fn extend(&mut self, other: Grasps) {
+        self.list.extend(other.list);
+        self.outcomes = self.outcomes.take().or(other.outcomes);
+    }
+
+    /// The `count` best force-closed grasps, the best first; equal ones stay in the order in which
+    /// they were found.
+    pub fn best(&self, count: usize) -> Vec<&Grasp> {
+        let mut ranked: Vec<&Grasp> = self.list.iter().filter(|g| g.quality > 0.0).collect();
+        ranked.sort_by(|a, b| b.quality.total_cmp(&a.quality));
+        ranked.truncate(count);
+        ranked
+    }
+
+    /// All grasps, in the order in which they were found.
+    pub fn iter(&self) -> impl Iterator<Item = &Grasp> {
+        self.list.iter()
+    }
+
+    /// Number of grasps.
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Whether there is no grasp.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// What became of the hand poses, where poses were tried.
+    pub fn outcomes(&self) -> Option<&OutcomeCounts> {
+        self.outcomes.as_ref()
+    }
+}
+
+/// Force-closed grasps, the best first; equal ones stay in the order in which they were found.
+pub fn ranked(mut grasps: Vec<Grasp>) -> Vec<Grasp> {
+    grasps.retain(|g| g.quality > 0.0);
+    grasps.sort_by(|a, b| b.quality.total_cmp(&a.quality));
+    grasps
+}
+
+/// The joints with every finger opened by `opening` units of closing, within the limits.
+pub(crate) fn opened(hand: &Hand, joints: &[f64], opening: f64) -> Vec<f64> {
+    let mut open = joints.to_vec();
+    for &(driven, ratio) in hand.fingers().iter().flat_map(|f| &f.closing) {
+        open[driven] -= opening * ratio;
+    }
+    hand.model().clamp_to_limits(&mut open);
+    open
+}

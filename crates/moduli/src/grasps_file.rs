@@ -1,0 +1,103 @@
+//! Grasps as `grasps.json` stores them, in the frame of the user's cloud.
+
+use std::collections::BTreeMap;
+
+use hand::Hand;
+use record::grasps::{
+    AssessmentRecord, ExecutionRecord, GRASPS_VERSION, HandRecord, JointRecord, PoseRecord,
+    SourceRecord,
+};
+use record::{GraspRecord, GraspsFile};
+
+use crate::grasp::{Grasp, HandPlacement, Source};
+use crate::measure::Measure;
+use crate::records::{convention_record, joint_record};
+
+impl Measure<'_> {
+    /// The file of ranked grasps of a hand; ranks follow the order of the list.
+    pub fn grasps_file(&self, hand: &Hand, ranked: &[Grasp]) -> GraspsFile {
+        let record = |(i, grasp): (usize, &Grasp)| {
+            let hand = grasp
+                .hand()
+                .map(|placement| hand_record(grasp, placement, hand));
+            grasp_record(i + 1, grasp, source_record(grasp.source()), hand)
+        };
+        self.file_of(ranked.iter().enumerate().map(record).collect())
+    }
+
+    /// The file of grasps that are records already.
+    pub fn file_of(&self, grasps: Vec<GraspRecord>) -> GraspsFile {
+        GraspsFile {
+            version: GRASPS_VERSION,
+            object: self.object().object_record(),
+            convention: convention_record(self.convention()),
+            grasps,
+        }
+    }
+}
+
+/// One grasp as it is stored.
+pub fn grasp_record(
+    rank: usize,
+    grasp: &Grasp,
+    source: SourceRecord,
+    hand: Option<HandRecord>,
+) -> GraspRecord {
+    let in_cloud = grasp.contacts_in_cloud();
+    let normals = grasp.inward_normals();
+    GraspRecord {
+        rank,
+        quality: grasp.quality(),
+        contacts_m: in_cloud.into_iter().map(Into::into).collect(),
+        inward_normals: normals.iter().map(|n| n.into_inner().into()).collect(),
+        directions: grasp
+            .directions()
+            .iter()
+            .map(|p| p.into_inner().into())
+            .collect(),
+        source,
+        hand,
+        assessment: AssessmentRecord {
+            lower: grasp.upper().map(|_| grasp.lower()),
+            upper: grasp.upper(),
+            ..AssessmentRecord::default()
+        },
+    }
+}
+
+/// Where a grasp comes from, as it is stored.
+pub fn source_record(source: &Source) -> SourceRecord {
+    match source {
+        Source::Synthesis { .. } | Source::Given => SourceRecord::Synthesis,
+        Source::Transfer {
+            from,
+            shape_distance,
+            source_quality,
+            ..
+        } => SourceRecord::Transfer {
+            from: Some(from.clone()),
+            shape_distance_m: Some(*shape_distance),
+            source_quality: Some(*source_quality),
+        },
+    }
+}
+
+fn hand_record(grasp: &Grasp, placement: &HandPlacement, hand: &Hand) -> HandRecord {
+    let pose = grasp.palm_in_cloud().unwrap_or(placement.centred_from_palm);
+    HandRecord {
+        name: hand.name().to_owned(),
+        palm_link: hand.model().links()[0].name.clone(),
+        cloud_from_palm: PoseRecord::from(&pose),
+        joints: by_name(hand, &placement.joints),
+        pregrasp_joints: by_name(hand, &placement.pregrasp_joints),
+        contact_error_m: placement.contact_error,
+        execution: ExecutionRecord::default(),
+    }
+}
+
+fn by_name(hand: &Hand, joints: &[f64]) -> BTreeMap<String, JointRecord> {
+    let driven = hand.model().driven_joints().zip(joints);
+    driven
+        .map(|(joint, value)| (joint.name.clone(), joint_record(joint.kind, *value)))
+        .collect()
+}

@@ -1,0 +1,153 @@
+//! Hands for carried grasps: a pose and joints that bring the tips to given contacts.
+
+use grasp::QualityError;
+use hand::{CollisionObject, Hand, ImproveParams, ReachOutcome, ReachParams, Reached, Reacher};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rayon::prelude::*;
+
+use crate::carried::CarriedGrasp;
+use crate::error::Error;
+use crate::grasp::{HandPlacement, Source, opened};
+use crate::measure::Measure;
+
+/// How hard a hand is looked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HandSearch {
+    /// Random starts of the search for a hand that meets the contacts.
+    pub starts: usize,
+    /// Closings tried around contacts that no hand meets.
+    pub trials: usize,
+    /// First move of the contacts in such a trial, metres.
+    pub spread: f64,
+    /// Seed of the search: the same seed gives the same hands on any number of threads.
+    pub seed: u64,
+}
+
+impl Default for HandSearch {
+    /// 60 starts, 40 trials within 4 mm, seed 0.
+    fn default() -> Self {
+        Self {
+            starts: 60,
+            trials: 40,
+            spread: 4e-3,
+            seed: 0,
+        }
+    }
+}
+
+/// Looks for a hand for every grasp that has none, over the threads of rayon's pool; `done` is called
+/// once per grasp. Grasps of another number of contacts than the hand has fingers stay without one.
+///
+/// Where no hand meets the contacts, the best grasp that the hand makes near them takes their place,
+/// if it is stable and no worse than the naive transfer. Every grasp has a generator of its own, so
+/// the result does not depend on threads.
+pub(crate) fn give_hands(
+    measure: &Measure<'_>,
+    hand: &Hand,
+    carried: &mut [CarriedGrasp],
+    search: &HandSearch,
+    done: &(dyn Fn() + Sync),
+) -> Result<(), Error> {
+    let fingers = hand.fingers().len();
+    if carried.iter().all(|c| c.grasp.contacts().len() != fingers) {
+        return Ok(());
+    }
+    let object =
+        CollisionObject::new(measure.object().shape()).map_err(hand::SynthesisError::from)?;
+    let reacher = Reacher::new(&object, hand);
+    let params = ReachParams {
+        starts: search.starts,
+        friction: measure.convention().friction,
+        ..ReachParams::default()
+    };
+    let finder = Finder {
+        measure,
+        hand,
+        reacher: &reacher,
+        params: &params,
+        search,
+    };
+    carried
+        .par_iter_mut()
+        .enumerate()
+        .filter(|(_, c)| c.grasp.hand().is_none())
+        .try_for_each(|(i, carried)| {
+            let mut generator = ChaCha8Rng::seed_from_u64(search.seed);
+            // Streams are independent sequences of one seed; 0 is that of the hand poses.
+            generator.set_stream(1 + i as u64);
+            finder.find(carried, &mut generator)?;
+            done();
+            Ok(())
+        })
+}
+
+struct Finder<'a> {
+    measure: &'a Measure<'a>,
+    hand: &'a Hand,
+    reacher: &'a Reacher<'a>,
+    params: &'a ReachParams,
+    search: &'a HandSearch,
+}
+
+impl Finder<'_> {
+    fn find(
+        &self,
+        carried: &mut CarriedGrasp,
+        generator: &mut ChaCha8Rng,
+    ) -> Result<(), QualityError> {
+        let known: Vec<_> = carried.hand.clone().into_iter().collect();
+        let wanted = carried.grasp.contacts().to_vec();
+        match self.reacher.reach(&wanted, self.params, &known, generator) {
+            ReachOutcome::Reached(found) => carried.grasp.place(self.placement(found)),
+            ReachOutcome::Near(near) => self.settle(carried, near, generator)?,
+            ReachOutcome::Nothing { .. } | ReachOutcome::WrongCount { .. } => {}
+        }
+        Ok(())
+    }
+
+    /// Takes the best contacts that the hand makes near the wanted ones.
+    fn settle(
+        &self,
+        carried: &mut CarriedGrasp,
+        near: Reached,
+        generator: &mut ChaCha8Rng,
+    ) -> Result<(), QualityError> {
+        let improve = ImproveParams {
+            trials: self.search.trials,
+            spread: self.search.spread,
+            convention: self.measure.convention().clone(),
+            centre: self.measure.centre(),
+        };
+        let wanted = carried.grasp.contacts().to_vec();
+        let found = self
+            .reacher
+            .improve(&wanted, near, self.params, &improve, generator)?;
+        let naive = match carried.grasp.source() {
+            Source::Transfer { naive, .. } => *naive,
+            Source::Synthesis { .. } | Source::Given => 0.0,
+        };
+        if self.measure.is_stable(found.quality) && found.quality >= naive {
+            let contacts = found.reached.contacts.clone();
+            let directions = found.reached.directions.clone();
+            carried.grasp.settle(directions, contacts, found.quality);
+            carried.grasp.place(HandPlacement {
+                contact_error: 0.0,
+                met: false,
+                ..self.placement(found.reached)
+            });
+        }
+        Ok(())
+    }
+
+    fn placement(&self, found: Reached) -> HandPlacement {
+        let opening = ReachParams::default().opening;
+        HandPlacement {
+            centred_from_palm: found.object_from_palm,
+            pregrasp_joints: opened(self.hand, &found.joints, opening),
+            joints: found.joints,
+            contact_error: found.position_error,
+            met: true,
+        }
+    }
+}

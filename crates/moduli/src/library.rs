@@ -1,0 +1,234 @@
+//! The library of known objects, and their grasps carried to a new one (Sec. IV-E).
+
+use std::sync::OnceLock;
+
+use hand::{Hand, HandState, carried_pose};
+use rayon::prelude::*;
+use record::{LibraryEntry, LibraryGrasp, LibraryRecord};
+use shape::RadialField;
+use space::point::contacts_on;
+use space::{Continuation, Transfer, TransferEnd};
+use sph::Direction;
+
+use crate::carried::{CarriedGrasp, best};
+use crate::error::Error;
+use crate::grasp::{Grasp, Grasps, Source};
+use crate::hands::{HandSearch, give_hands};
+use crate::measure::Measure;
+use crate::object::Object;
+use crate::records::stored_coefficients;
+
+/// Known objects with their best grasps.
+#[derive(Debug)]
+pub struct Library {
+    bytes: &'static [u8],
+    record: OnceLock<LibraryRecord>,
+}
+
+/// How grasps are carried over from a library.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TransferOptions {
+    /// Nearest known objects from which grasps are carried.
+    pub neighbours: usize,
+    /// Grasps carried from each, the best first.
+    pub grasps: usize,
+    /// Grasps kept, the best, for which a hand is looked for.
+    pub keep: usize,
+    /// How a hand is looked for.
+    pub search: HandSearch,
+}
+
+impl Default for TransferOptions {
+    /// Four grasps of each of the three nearest objects, the best twelve kept.
+    fn default() -> Self {
+        Self {
+            neighbours: 3,
+            grasps: 4,
+            keep: 12,
+            search: HandSearch::default(),
+        }
+    }
+}
+
+/// A known object near the one that is grasped.
+#[derive(Clone, Debug)]
+pub struct Neighbour {
+    /// Id and name.
+    pub name: String,
+    /// Distance d of the shapes (Sec. III-A), metres.
+    pub distance: f64,
+    object: Object,
+    grasps: Vec<LibraryGrasp>,
+}
+
+impl Neighbour {
+    /// Name, and distance of the shapes in metres.
+    pub(crate) fn described(&self) -> (String, f64) {
+        (self.name.clone(), self.distance)
+    }
+}
+
+impl Library {
+    /// The library that moduli carries: twelve objects with grasps of the Schunk SDH.
+    pub fn builtin() -> &'static Self {
+        static BUILTIN: Library = Library {
+            bytes: fixtures::LIBRARY,
+            record: OnceLock::new(),
+        };
+        &BUILTIN
+    }
+
+    /// A library read from a file's bytes.
+    ///
+    /// # Errors
+    /// The bytes are not a library.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
+        Ok(Self::from_record(LibraryRecord::from_bytes(bytes)?))
+    }
+
+    /// A library of the given entries.
+    pub fn from_record(record: LibraryRecord) -> Self {
+        Self {
+            bytes: &[],
+            record: OnceLock::from(record),
+        }
+    }
+
+    /// The stored entries; decoded once.
+    ///
+    /// # Errors
+    /// The bytes are damaged.
+    pub fn record(&self) -> Result<&LibraryRecord, Error> {
+        if let Some(record) = self.record.get() {
+            return Ok(record);
+        }
+        let record = LibraryRecord::from_bytes(self.bytes)?;
+        Ok(self.record.get_or_init(|| record))
+    }
+
+    /// The known objects nearest to an object by d (Sec. III-A), the nearest first.
+    ///
+    /// # Errors
+    /// An entry is damaged.
+    pub fn nearest(&self, object: &Object, count: usize) -> Result<Vec<Neighbour>, Error> {
+        let beta = object.shape().coefficients();
+        let damaged = |entry: &LibraryEntry, error| Error::LibraryShape {
+            object: entry.id.clone(),
+            error,
+        };
+        let mut order = Vec::new();
+        for entry in &self.record()?.entries {
+            let other = stored_coefficients(&entry.shape).map_err(|e| damaged(entry, e))?;
+            order.push((entry, beta.distance(&other)));
+        }
+        order.sort_by(|a, b| a.1.total_cmp(&b.1));
+        order
+            .into_par_iter()
+            .take(count)
+            .map(|(entry, distance)| {
+                let object = Object::from_record(&entry.shape).map_err(|error| match error {
+                    Error::Stored(error) => damaged(entry, error),
+                    other => other,
+                })?;
+                object.field();
+                Ok(Neighbour {
+                    name: format!("{} {}", entry.id, entry.name),
+                    distance,
+                    object: object.named(&entry.id),
+                    grasps: entry.grasps.clone(),
+                })
+            })
+            .collect()
+    }
+
+    /// Carries the best grasps of the nearest known objects to the object of `measure`, and looks for
+    /// a pose of `hand` for each.
+    ///
+    /// # Errors
+    /// An entry is damaged, or a transfer or a quality cannot be computed.
+    pub fn transfer_to(&self, measure: &Measure<'_>, hand: &Hand) -> Result<Grasps, Error> {
+        let options = TransferOptions::default();
+        let neighbours = self.nearest(measure.object(), options.neighbours)?;
+        let mut carried = carry(measure, &neighbours, options.grasps, &|| {})?;
+        if self.record()?.hand != hand.name() {
+            carried.iter_mut().for_each(|c| c.hand = None);
+        }
+        let mut kept = best(carried, options.keep);
+        give_hands(measure, hand, &mut kept, &options.search, &|| {})?;
+        Ok(Grasps {
+            list: kept.into_iter().map(|c| c.grasp).collect(),
+            outcomes: None,
+        })
+    }
+}
+
+/// Carries the first `grasps` grasps of every neighbour to the object of `measure`, over the threads
+/// of rayon's pool; `done` is called once per grasp.
+pub(crate) fn carry(
+    measure: &Measure<'_>,
+    neighbours: &[Neighbour],
+    grasps: usize,
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<CarriedGrasp>, Error> {
+    let to = end(measure.object());
+    let pairs: Vec<Transfer> = neighbours
+        .iter()
+        .map(|n| Transfer::new(end(&n.object), to, measure.rule()))
+        .collect();
+    let mut jobs = Vec::new();
+    for (neighbour, pair) in neighbours.iter().zip(&pairs) {
+        for (index, grasp) in neighbour.grasps.iter().enumerate().take(grasps) {
+            let directions = grasp.directions().ok_or_else(|| Error::LibraryGrasp {
+                object: neighbour.object.name().to_owned(),
+                grasp: index,
+            })?;
+            jobs.push((neighbour, pair, grasp, directions));
+        }
+    }
+    jobs.into_par_iter()
+        .map(|(neighbour, pair, grasp, directions)| {
+            let carried = carry_one(measure, pair, neighbour, grasp, &directions);
+            done();
+            carried.map_err(|error| Error::Transfer {
+                from: neighbour.object.name().to_owned(),
+                error,
+            })
+        })
+        .collect()
+}
+
+fn end(object: &Object) -> TransferEnd<'_> {
+    let surface: &RadialField = object.field();
+    TransferEnd {
+        surface,
+        object_origin: object.frame().cloud_origin(),
+    }
+}
+
+fn carry_one(
+    measure: &Measure<'_>,
+    pair: &Transfer,
+    neighbour: &Neighbour,
+    grasp: &LibraryGrasp,
+    directions: &[Direction],
+) -> Result<CarriedGrasp, space::TransferError> {
+    let arrived = Continuation::default().carry(pair, directions)?;
+    let naive = pair.naive(directions)?.quality;
+    let contacts = contacts_on(pair.target(), &arrived.contacts);
+    let held = contacts_on(pair.source(), directions);
+    let hand = HandState {
+        object_from_palm: carried_pose(&grasp.centred_from_palm(), &held, &contacts),
+        joints: grasp.joints_rad.clone(),
+    };
+    let source = Source::Transfer {
+        from: neighbour.name.clone(),
+        shape_distance: neighbour.distance,
+        source_quality: grasp.quality,
+        naive,
+    };
+    let carried = Grasp::new(arrived.contacts, contacts, arrived.quality, source);
+    Ok(CarriedGrasp {
+        grasp: carried.with_frame(*measure.object().frame()),
+        hand: Some(hand),
+    })
+}

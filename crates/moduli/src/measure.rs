@@ -1,0 +1,187 @@
+//! How quality is measured on one object, and when a grasp counts as stable.
+
+use grasp::{Contact, Convention, Edges, Epsilon, GraspModel, Workspace};
+use nalgebra::Point3;
+use space::point::contacts_on;
+use space::{MonotoneAscent, Objective, ResolvedConvention};
+use sph::Direction;
+
+use crate::error::Error;
+use crate::grasp::{Grasp, Source};
+use crate::object::Object;
+
+/// The largest friction coefficient tried in the search for the least.
+const MOST_FRICTION: f64 = 100.0;
+
+/// A convention resolved on one object.
+///
+/// It owns the centre of torques, the torque length, and the threshold from which a grasp is stable.
+/// The threshold belongs to the convention: 0.01 under `paper`, and under every other one a grasp is
+/// stable when its proved lower bound is positive.
+#[derive(Clone, Debug)]
+pub struct Measure<'a> {
+    object: &'a Object,
+    rule: Convention,
+    resolved: ResolvedConvention,
+}
+
+/// All metrics of one grasp. Lengths are those of the convention.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Metrics {
+    /// Epsilon quality, with its proved interval.
+    pub epsilon: Epsilon,
+    /// Volume of the convex hull of the wrenches, in the sixth power of the wrench unit; `None` for
+    /// round cones, whose hull is not a polytope.
+    pub volume: Option<f64>,
+    /// Epsilon quality when every contact force is bounded by itself (L∞) and not their sum.
+    pub linf: f64,
+    /// The largest weight that every edge keeps in a balance of all edges, times their number; `None`
+    /// where no weights balance, and for round cones.
+    pub min_weight: Option<f64>,
+    /// Smallest singular value of the grasp map.
+    pub smallest_singular_value: f64,
+    /// The least friction coefficient under which the grasp is closed; `None` when it is not closed
+    /// under the largest that is tried, 100.
+    pub least_friction: Option<f64>,
+}
+
+impl Object {
+    /// Resolves a convention on this object.
+    ///
+    /// # Errors
+    /// A number of the convention is out of range.
+    pub fn measure(&self, rule: &Convention) -> Result<Measure<'_>, Error> {
+        Measure::new(self, rule)
+    }
+}
+
+impl<'a> Measure<'a> {
+    /// Resolves a rule on an object.
+    ///
+    /// # Errors
+    /// A number of the convention is out of range.
+    pub fn new(object: &'a Object, rule: &Convention) -> Result<Self, Error> {
+        rule.validate()?;
+        let origin = object.frame().cloud_origin();
+        Ok(Self {
+            object,
+            rule: rule.clone(),
+            resolved: ResolvedConvention::new(rule, object.shape(), &origin),
+        })
+    }
+
+    /// The object.
+    pub fn object(&self) -> &'a Object {
+        self.object
+    }
+
+    /// The convention as it was given, which holds on any object.
+    pub fn rule(&self) -> &Convention {
+        &self.rule
+    }
+
+    /// The convention with everything filled in that the object decides.
+    pub fn convention(&self) -> &Convention {
+        self.resolved.convention()
+    }
+
+    /// The point about which torques are taken, centred frame, metres.
+    pub fn centre(&self) -> Point3<f64> {
+        self.resolved.centre()
+    }
+
+    /// The quality from which a grasp is stable.
+    pub fn stable_above(&self) -> f64 {
+        self.convention().stable_above
+    }
+
+    /// Whether a quality, or the proved lower end of one, counts as stable.
+    pub fn is_stable(&self, quality: f64) -> bool {
+        self.convention().is_stable(quality)
+    }
+
+    /// Quality as a function of contacts, for ascents.
+    pub fn objective(&self) -> Objective {
+        Objective::of(self.resolved.clone())
+    }
+
+    /// The epsilon quality of contacts in the centred frame, as a proved interval.
+    ///
+    /// # Errors
+    /// A contact is not finite, or there are too few.
+    pub fn epsilon(&self, contacts: &[Contact]) -> Result<Epsilon, Error> {
+        let centre = self.centre();
+        let model = GraspModel::new(contacts, &centre, self.convention());
+        Ok(grasp::epsilon(&model, &mut Workspace::new())?)
+    }
+
+    /// All metrics of contacts in the centred frame.
+    ///
+    /// # Errors
+    /// A contact is not finite, or there are too few.
+    pub fn metrics(&self, contacts: &[Contact]) -> Result<Metrics, Error> {
+        metrics(contacts, &self.centre(), self.convention())
+    }
+
+    /// The grasp with contacts in the given directions.
+    ///
+    /// # Errors
+    /// A quality cannot be computed.
+    pub fn grasp(&self, directions: &[Direction], source: Source) -> Result<Grasp, Error> {
+        let contacts = contacts_on(self.object.field(), directions);
+        let epsilon = self.epsilon(&contacts)?;
+        let mut grasp = Grasp::new(directions.to_vec(), contacts, epsilon.quality, source);
+        grasp.set_interval(&epsilon);
+        Ok(grasp.with_frame(*self.object.frame()))
+    }
+
+    /// The grasp with contacts at the surface points nearest in direction to the given points, in the
+    /// frame of the cloud, metres.
+    ///
+    /// # Errors
+    /// A point is not finite or lies at the centre of the object.
+    pub fn grasp_at(&self, points: &[[f64; 3]]) -> Result<Grasp, Error> {
+        let (directions, _) = self.object.directions_of(points)?;
+        self.grasp(&directions, Source::Given)
+    }
+
+    /// Raises the quality of a grasp by moving its contacts over the surface; never lowers it. The
+    /// result has no hand.
+    ///
+    /// # Errors
+    /// A quality cannot be computed.
+    pub fn ascend(&self, grasp: &Grasp) -> Result<Grasp, Error> {
+        let mut objective = self.objective();
+        let start = grasp.directions();
+        let field = self.object.field();
+        let end = MonotoneAscent::default().climb(field, start, &mut objective, |_| {})?;
+        self.grasp(&end.contacts, grasp.source().clone())
+    }
+}
+
+/// All metrics of contacts about a centre, under a convention whose torque length is resolved.
+///
+/// # Errors
+/// A contact is not finite, or there are too few.
+pub fn metrics(
+    contacts: &[Contact],
+    centre: &Point3<f64>,
+    convention: &Convention,
+) -> Result<Metrics, Error> {
+    let model = GraspModel::new(contacts, centre, convention);
+    let polygonal = matches!(convention.edges, Edges::Polygon(_));
+    let mut workspace = Workspace::new();
+    let epsilon = grasp::epsilon(&model, &mut workspace)?;
+    Ok(Metrics {
+        epsilon,
+        volume: polygonal.then(|| grasp::volume(&model)).transpose()?,
+        linf: grasp::epsilon_linf(&model, &mut workspace)?.quality,
+        min_weight: if polygonal {
+            grasp::min_weight(&model)?
+        } else {
+            None
+        },
+        smallest_singular_value: grasp::smallest_singular_value(&model)?,
+        least_friction: grasp::least_friction(&model, MOST_FRICTION, &mut workspace)?,
+    })
+}

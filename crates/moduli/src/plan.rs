@@ -1,0 +1,172 @@
+//! The main job: grasps carried from known objects and grasps found afresh, with a hand, ranked.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use hand::{Hand, OutcomeCounts};
+
+use crate::carried::best;
+use crate::error::Error;
+use crate::grasp::{Grasp, ranked};
+use crate::hands::give_hands;
+use crate::library::{Library, Neighbour, TransferOptions, carry};
+use crate::measure::Measure;
+use crate::synthesis::Poses;
+
+/// What is tried, and how much of it is kept.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Transfer from the library.
+    pub transfer: TransferOptions,
+    /// Synthesis with the hand.
+    pub poses: Poses,
+    /// Synthesized grasps kept, the best.
+    pub keep: usize,
+}
+
+impl Default for Plan {
+    /// Transfers as by default, 700 hand poses, twelve grasps kept of each kind.
+    fn default() -> Self {
+        Self {
+            transfer: TransferOptions::default(),
+            poses: Poses {
+                count: 700,
+                ..Poses::default()
+            },
+            keep: 12,
+        }
+    }
+}
+
+/// A part of the plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Grasps are carried from known objects.
+    Transfer,
+    /// A hand is looked for at the carried grasps.
+    Reach,
+    /// The hand is closed from sampled poses.
+    Synthesis,
+}
+
+/// How far a stage is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// The stage.
+    pub stage: Stage,
+    /// Steps done.
+    pub done: usize,
+    /// Steps in all.
+    pub total: usize,
+}
+
+/// The result of a plan.
+#[derive(Clone, Debug)]
+pub struct Planned {
+    /// Force-closed grasps, the best first.
+    pub grasps: Vec<Grasp>,
+    /// What became of the transferred grasps.
+    pub transferred: TransferCounts,
+    /// What became of the hand poses.
+    pub outcomes: OutcomeCounts,
+}
+
+/// What became of the transferred grasps.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TransferCounts {
+    /// The known objects from which grasps were carried: name, and distance of the shapes in metres.
+    pub neighbours: Vec<(String, f64)>,
+    /// Grasps carried.
+    pub all: usize,
+    /// Of these, force-closed on the object.
+    pub closed: usize,
+    /// Of the kept ones, with a hand.
+    pub with_hand: usize,
+    /// Of these, those whose contacts the hand meets; it makes others near the contacts of the rest.
+    pub met: usize,
+    /// Of the kept ones, those with another number of contacts than the hand has fingers.
+    pub of_other_count: usize,
+}
+
+impl Plan {
+    /// Carries grasps from the library, closes the hand from sampled poses, and ranks everything by
+    /// quality.
+    ///
+    /// `progress` is called after every step, from any thread. The result does not depend on the
+    /// number of threads.
+    ///
+    /// # Errors
+    /// The library is damaged, the surface is too rough for the hand's collision model, or a quality
+    /// cannot be computed.
+    pub fn run(
+        &self,
+        measure: &Measure<'_>,
+        hand: &Hand,
+        library: &Library,
+        progress: &(dyn Fn(Progress) + Sync),
+    ) -> Result<Planned, Error> {
+        let (mut grasps, transferred) = self.carry(measure, hand, library, progress)?;
+        let step = counter(Stage::Synthesis, self.poses.count, progress);
+        let mut found = measure.synthesize_watched(hand, &self.poses, &step)?;
+        found.list.truncate(self.keep);
+        grasps.extend(found.list);
+        let mut grasps = ranked(grasps);
+        for grasp in grasps.iter_mut().filter(|g| g.upper().is_none()) {
+            let epsilon = measure.epsilon(grasp.contacts())?;
+            grasp.set_interval(&epsilon);
+        }
+        Ok(Planned {
+            grasps,
+            transferred,
+            outcomes: found.outcomes.unwrap_or_default(),
+        })
+    }
+
+    /// Grasps of the nearest known objects, the best with a hand where one is found.
+    fn carry(
+        &self,
+        measure: &Measure<'_>,
+        hand: &Hand,
+        library: &Library,
+        progress: &(dyn Fn(Progress) + Sync),
+    ) -> Result<(Vec<Grasp>, TransferCounts), Error> {
+        let options = &self.transfer;
+        let neighbours = library.nearest(measure.object(), options.neighbours)?;
+        let total = options.grasps * neighbours.len();
+        let step = counter(Stage::Transfer, total, progress);
+        let mut all = carry(measure, &neighbours, options.grasps, &step)?;
+        if library.record()?.hand != hand.name() {
+            // Poses and joints of another hand say nothing of this one's.
+            all.iter_mut().for_each(|c| c.hand = None);
+        }
+        let mut counts = TransferCounts {
+            neighbours: neighbours.iter().map(Neighbour::described).collect(),
+            all: all.len(),
+            closed: all.iter().filter(|c| c.grasp.quality() > 0.0).count(),
+            ..TransferCounts::default()
+        };
+        let mut kept = best(all, options.keep);
+        let fingers = hand.fingers().len();
+        let other = |grasp: &Grasp| grasp.contacts().len() != fingers;
+        counts.of_other_count = kept.iter().filter(|c| other(&c.grasp)).count();
+        let step = counter(Stage::Reach, kept.len(), progress);
+        give_hands(measure, hand, &mut kept, &options.search, &step)?;
+        let grasps: Vec<Grasp> = kept.into_iter().map(|c| c.grasp).collect();
+        let hands = || grasps.iter().filter_map(Grasp::hand);
+        counts.with_hand = hands().count();
+        counts.met = hands().filter(|h| h.met).count();
+        Ok((grasps, counts))
+    }
+}
+
+/// Counts the steps of a stage.
+fn counter<'a>(
+    stage: Stage,
+    total: usize,
+    progress: &'a (dyn Fn(Progress) + Sync),
+) -> impl Fn() + Sync + 'a {
+    let done = AtomicUsize::new(0);
+    move || {
+        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
+        progress(Progress { stage, done, total });
+    }
+}

@@ -1,0 +1,136 @@
+//! Grasps of a hand on an object, found by closing it from sampled poses (Sec. IV-C).
+
+use hand::{
+    ClosingRules, CollisionObject, Hand, HandGrasp, PoseSampling, Synthesis, SynthesisError,
+    SynthesisParams, collect, evaluate_pose,
+};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rayon::prelude::*;
+
+use crate::error::Error;
+use crate::grasp::{Grasp, Grasps, HandPlacement, Source};
+use crate::measure::Measure;
+
+/// Which poses of a hand are tried, and when a closed hand counts as a grasp.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Poses {
+    /// Number of poses.
+    pub count: usize,
+    /// Indices of the pre-shapes from which the fingers close; all when empty.
+    pub preshapes: Vec<usize>,
+    /// Range of the distance from the surface, metres; that of the hand when absent.
+    pub standoff: Option<(f64, f64)>,
+    /// Whether fingers close past their tips until every link holds (power grasps).
+    pub power: bool,
+    /// The quality from which a grasp counts as stable; that of the measure when absent.
+    pub least_quality: Option<f64>,
+    /// Seed of the poses: the same seed gives the same grasps on any number of threads.
+    pub seed: u64,
+}
+
+impl Default for Poses {
+    /// The paper's 1,400 poses, all pre-shapes, fingertip grasps, seed 0.
+    fn default() -> Self {
+        Self {
+            count: 1400,
+            preshapes: Vec::new(),
+            standoff: None,
+            power: false,
+            least_quality: None,
+            seed: 0,
+        }
+    }
+}
+
+impl Measure<'_> {
+    /// Closes a hand from sampled poses and keeps the stable grasps, the best first.
+    ///
+    /// Poses are drawn in one sequence and evaluated on the threads of rayon's pool. 1,400 poses take
+    /// about 2 s on one core.
+    ///
+    /// # Errors
+    /// The surface is too rough for the collision model, or a quality cannot be computed.
+    pub fn synthesize(&self, hand: &Hand, poses: &Poses) -> Result<Grasps, Error> {
+        self.synthesize_watched(hand, poses, &|| {})
+    }
+
+    /// The same; `pose_done` is called once per pose, from any thread.
+    ///
+    /// # Errors
+    /// As [`Measure::synthesize`].
+    pub fn synthesize_watched(
+        &self,
+        hand: &Hand,
+        poses: &Poses,
+        pose_done: &(dyn Fn() + Sync),
+    ) -> Result<Grasps, Error> {
+        let found = self.close_hand(hand, poses, pose_done)?;
+        let grasp = |found: &HandGrasp| self.of_hand_grasp(hand, found);
+        Ok(Grasps {
+            list: found.grasps.iter().map(grasp).collect::<Result<_, _>>()?,
+            outcomes: Some(found.outcomes),
+        })
+    }
+
+    fn close_hand(
+        &self,
+        hand: &Hand,
+        poses: &Poses,
+        pose_done: &(dyn Fn() + Sync),
+    ) -> Result<Synthesis, SynthesisError> {
+        let surface = self.object().shape();
+        let preshapes = if poses.preshapes.is_empty() {
+            (0..hand.preshapes().len()).collect()
+        } else {
+            poses.preshapes.clone()
+        };
+        let params = SynthesisParams {
+            poses: poses.count,
+            sampling: PoseSampling {
+                preshapes,
+                standoff: poses.standoff.unwrap_or(hand.standoff()),
+                ..PoseSampling::of_hand(hand)
+            },
+            rules: ClosingRules {
+                past_tips: poses.power,
+                ..ClosingRules::default()
+            },
+            convention: self.convention().clone(),
+            centre: self.centre(),
+            least_quality: poses.least_quality.unwrap_or(self.stable_above()),
+        };
+        let object = CollisionObject::new(surface)?;
+        let mut generator = ChaCha8Rng::seed_from_u64(poses.seed);
+        let drawn = params
+            .sampling
+            .sample(surface, hand, poses.count, &mut generator);
+        let outcomes = drawn
+            .par_iter()
+            .map(|pose| {
+                pose_done();
+                evaluate_pose(&object, hand, pose, &params)
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        Ok(collect(outcomes))
+    }
+
+    fn of_hand_grasp(&self, hand: &Hand, found: &HandGrasp) -> Result<Grasp, Error> {
+        let source = Source::Synthesis {
+            preshape: found.preshape,
+        };
+        let (directions, contacts) = (found.directions.clone(), found.contacts.clone());
+        let epsilon = self.epsilon(&contacts)?;
+        let mut grasp = Grasp::new(directions, contacts, found.quality, source);
+        grasp.set_interval(&epsilon);
+        Ok(grasp
+            .with_frame(*self.object().frame())
+            .with_hand(Some(HandPlacement {
+                centred_from_palm: found.object_from_palm,
+                joints: found.joints.clone(),
+                pregrasp_joints: hand.preshapes()[found.preshape].joints.clone(),
+                contact_error: 0.0,
+                met: true,
+            })))
+    }
+}
