@@ -28,6 +28,11 @@ impl Failure {
         Self::new(4, message)
     }
 
+    /// The library inside the program is damaged.
+    pub(crate) fn library(error: impl Display) -> Self {
+        Self::other(format!("the built-in library: {error}"))
+    }
+
     /// Anything else, such as a full disk.
     pub(crate) fn other(message: impl Into<String>) -> Self {
         Self::new(1, message)

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use grasp::{Convention, Edges};
+use moduli::Object;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use record::{EnvelopeError, GraspsFile, ShapeRecord};
@@ -96,6 +97,11 @@ pub(crate) fn shape_record(path: &Path) -> Result<ShapeRecord, Failure> {
         };
         Failure::input(path, format!("{e}{hint}"))
     })
+}
+
+/// The object of a shape file; its surface is proved again.
+pub(crate) fn object(path: &Path) -> Result<Object, Failure> {
+    Object::from_record(&shape_record(path)?).map_err(|e| Failure::input(path, e))
 }
 
 /// A grasps.json.

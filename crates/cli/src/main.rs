@@ -2,16 +2,18 @@
 
 mod args;
 mod commands;
-mod delivery;
 mod failure;
 mod files;
 mod hands;
 mod input;
 mod limits;
 mod mesh_folders;
+mod moved;
+mod movement;
+mod outcomes;
 mod output;
-mod placed;
-mod plan;
+mod page;
+mod result;
 
 use std::process::ExitCode;
 

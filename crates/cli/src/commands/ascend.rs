@@ -2,16 +2,15 @@
 
 use std::time::Instant;
 
-use nalgebra::Vector3;
-use shape::RadialField;
+use moduli::Object;
 use space::point::contacts_on;
 use space::{AscentError, Constraints, MonotoneAscent, Objective, PaperAscent, Step};
 use sph::Direction;
 
 use crate::args::{AscendOptions, AscentScheme, Common};
-use crate::delivery::Movement;
 use crate::failure::Failure;
-use crate::placed::{Moved, Object, Placed, TraceStep};
+use crate::moved::{Given, Moved, TraceStep, given};
+use crate::movement::Movement;
 use crate::{input, limits};
 
 /// The paper's ascent (Sec. IV-D).
@@ -23,9 +22,12 @@ pub(crate) const PAPER_ASCENT: PaperAscent = PaperAscent {
 
 pub(crate) fn run(options: &AscendOptions, common: &Common) -> Result<(), Failure> {
     let convention = input::convention(&options.moved.convention)?;
-    let object = Object::read(&options.shape)?;
-    let grasps = object.grasps(&options.grasps)?;
-    let objective = Objective::new(&convention, &object.surface, &object.origin());
+    let object = input::object(&options.shape)?;
+    let grasps = given(&object, &options.grasps)?;
+    let measure = object
+        .measure(&convention)
+        .map_err(|e| Failure::usage(e.to_string()))?;
+    let objective = measure.objective();
     let constraints = limits::constraints(&options.limits, &objective)?;
     if options.scheme == AscentScheme::Paper && !constraints.is_empty() {
         return Err(Failure::usage(
@@ -38,13 +40,11 @@ pub(crate) fn run(options: &AscendOptions, common: &Common) -> Result<(), Failur
             AscentScheme::Ours => "ours",
             AscentScheme::Paper => "paper",
         },
-        object: &object,
-        objective: &objective,
+        measure: &measure,
         start: Instant::now(),
     };
-    movement.run(&grasps, &options.moved, common, |i, placed| {
-        climb(options, &object, placed, &objective, &constraints)
-            .map_err(|e| failed(options, i, &e))
+    movement.run(&grasps, &options.moved, common, |i, start| {
+        climb(options, &object, start, &objective, &constraints).map_err(|e| failed(options, i, &e))
     })
 }
 
@@ -61,20 +61,19 @@ fn failed(options: &AscendOptions, index: usize, error: &AscentError) -> Failure
 fn climb(
     options: &AscendOptions,
     object: &Object,
-    placed: &Placed,
+    given: &Given,
     objective: &Objective,
     constraints: &Constraints,
 ) -> Result<Moved, AscentError> {
     let mut objective = objective.clone();
     let mut steps = Vec::new();
-    let centre = object.record.centre_in_cloud().coords;
     let keep = |step: &Step| {
         if options.moved.trace.is_some() {
-            let contacts = points(&object.surface, step.contacts, &centre);
+            let contacts = points(object, step.contacts);
             steps.push(TraceStep::new(1.0, step, contacts));
         }
     };
-    let (surface, start) = (&object.surface, &placed.directions);
+    let (surface, start) = (object.field(), &given.directions);
     let ascent = match options.scheme {
         AscentScheme::Ours => MonotoneAscent::default().climb_within(
             surface,
@@ -93,14 +92,15 @@ fn climb(
         quality: ascent.quality,
         evaluations: ascent.evaluations,
         stationarity: Some(ascent.stationarity),
-        source: placed.source.clone(),
+        source: given.source.clone(),
         steps,
     })
 }
 
-fn points(surface: &RadialField, contacts: &[Direction], centre: &Vector3<f64>) -> Vec<[f64; 3]> {
-    contacts_on(surface, contacts)
-        .iter()
-        .map(|c| (c.position + centre).into())
+/// Points of the surface in the frame of the cloud.
+fn points(object: &Object, directions: &[Direction]) -> Vec<[f64; 3]> {
+    let on = contacts_on(object.field(), directions);
+    on.iter()
+        .map(|c| object.frame().to_cloud(&c.position).into())
         .collect()
 }

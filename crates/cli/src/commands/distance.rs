@@ -1,11 +1,11 @@
 //! `moduli distance`: how far shapes are from each other.
 
-use moduli::records::{stored_coefficients, stored_shape};
+use moduli::Library;
+use moduli::records::stored_coefficients;
 use serde::Serialize;
 
 use crate::args::{Common, DistanceOptions};
 use crate::failure::Failure;
-use crate::plan::library;
 use crate::{input, output};
 
 #[derive(Serialize)]
@@ -18,12 +18,15 @@ struct DistanceLine {
 pub(crate) fn run(options: &DistanceOptions, common: &Common) -> Result<(), Failure> {
     let mut shapes = Vec::new();
     for path in &options.shapes {
-        let record = input::shape_record(path)?;
-        let shape = stored_shape(&record).map_err(|e| Failure::input(path, e))?;
-        shapes.push((record.name, shape.coefficients().clone()));
+        let object = input::object(path)?;
+        shapes.push((
+            object.name().to_owned(),
+            object.shape().coefficients().clone(),
+        ));
     }
     if shapes.len() == 1 {
-        for entry in &library::built_in()?.entries {
+        let library = Library::builtin().record().map_err(Failure::library)?;
+        for entry in &library.entries {
             let beta = stored_coefficients(&entry.shape)
                 .map_err(|e| Failure::other(format!("{}: {e}", entry.id)))?;
             shapes.push((format!("{} {}", entry.id, entry.name), beta));

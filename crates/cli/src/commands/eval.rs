@@ -1,6 +1,5 @@
 //! `moduli eval`: a shape at given directions.
 
-use moduli::records::stored_shape;
 use nalgebra::Vector3;
 use serde::Serialize;
 use shape::Surface;
@@ -21,8 +20,8 @@ struct EvalLine {
 }
 
 pub(crate) fn run(options: &EvalOptions, common: &Common) -> Result<(), Failure> {
-    let shape = stored_shape(&input::shape_record(&options.shape)?)
-        .map_err(|e| Failure::input(&options.shape, e))?;
+    let object = input::object(&options.shape)?;
+    let shape = object.shape();
     let table = input::table(&options.directions, 3)?;
     let mut values = Vec::with_capacity(table.row_count() * COLUMNS);
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);

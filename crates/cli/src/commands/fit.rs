@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use moduli::records::shape_record;
+use moduli::Object;
 use serde::Serialize;
 
 use crate::args::{Common, FitOptions};
@@ -75,7 +75,9 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Fail
     let seconds = start.elapsed().as_secs_f64();
     let points = cloud.points().len();
     if let Some(target) = target(path, options) {
-        let bytes = shape_record(&input::stem(path), &fit, points)
+        let object = Object::from_fit(&input::stem(path), fit.clone(), points);
+        let bytes = object
+            .to_record()
             .to_bytes()
             .map_err(|e| Failure::other(e.to_string()))?;
         output::write_file(&target, &bytes)?;

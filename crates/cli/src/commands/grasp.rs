@@ -5,17 +5,16 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use hand::Hand;
+use indicatif::ProgressBar;
+use moduli::{HandSearch, Library, Object, Plan, Poses, Progress, Stage, TransferOptions};
 use record::GraspsFile;
 use serde::Serialize;
 use shape::PointCloud;
 
 use crate::args::{Common, GraspOptions};
 use crate::failure::Failure;
-use crate::plan::synthesis::{Request, reasons, sentence, synthesize};
-use crate::plan::{
-    Candidate, Fitted, Target, library, ranking, reach, result, synthesis, transfer,
-};
-use crate::{hands, input, output};
+use crate::outcomes::{reasons, sentence, why_none};
+use crate::{hands, input, output, result};
 
 /// The built-in object that stands for "never seen before".
 const UNSEEN: &str = "U1";
@@ -49,73 +48,51 @@ struct GraspLine {
     seconds: f64,
 }
 
-/// Transferred grasps: all, and the kept ones with their hands.
-struct Carried {
-    all: usize,
-    closed: usize,
-    of_other_count: usize,
-    neighbours: Vec<String>,
-    kept: Vec<Candidate>,
-}
-
 pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure> {
     let start = Instant::now();
     let convention = input::convention(&options.convention)?;
     let hand = hands::load(&options.hand)?;
     let (name, cloud) = object(options, common)?;
     let points = cloud.points().len();
-    let fitted = Fitted::new(input::fit(&cloud, &name, &options.fit)?, points);
-    let target = Target::new(&name, &fitted, &convention);
+    let fit = input::fit(&cloud, &name, &options.fit)?;
+    let object = Object::from_fit(&name, fit, points);
+    let refused = |e: moduli::Error| Failure::refused(format!("{name}: {e}"));
+    let measure = object.measure(&convention).map_err(refused)?;
+    let bars = Bars::new(common.quiet);
+    let planned = plan(options, common)
+        .run(&measure, &hand, Library::builtin(), &|p| bars.show(p))
+        .map_err(refused)?;
+    bars.finish();
 
-    let carried = carried(options, common, &target, &hand)?;
-    let bar = output::progress(common.quiet, options.poses, "closing the hand");
-    let request = Request {
-        poses: options.poses,
-        preshapes: (0..hand.preshapes().len()).collect(),
-        least_quality: target.convention.stable_above,
-        standoff: None,
-        power: false,
-        seed: common.seed,
-    };
-    let found = synthesize(&target, &hand, &request, &bar)?;
-    bar.finish_and_clear();
-
-    let held = || carried.kept.iter().filter_map(|c| c.hand.as_ref());
-    let (with_hand, met) = (held().count(), held().filter(|h| h.met).count());
-    let mut candidates = carried.kept.clone();
-    candidates.extend(synthesis::candidates(&found, options.keep));
-    let ranked = ranking::rank(candidates);
     let folder = options
         .output
         .clone()
         .unwrap_or_else(|| PathBuf::from("out").join(&name));
-    let facts = vec![format!(
-        "Hand {}: {}.",
-        hand.name(),
-        sentence(&found.outcomes)
-    )];
-    let written = result::write(&folder, &target, Some(&cloud), &hand, &ranked, facts)?;
-
-    let (r_min, r_max) = fitted.shape.radius_bounds();
+    let summary = sentence(&planned.outcomes);
+    let facts = vec![format!("Hand {}: {summary}.", hand.name())];
+    let ranked = &planned.grasps;
+    let written = result::write(&folder, &measure, Some(&cloud), &hand, ranked, facts)?;
+    let transferred = &planned.transferred;
+    let (r_min, r_max) = object.shape().radius_bounds();
     let line = GraspLine {
         object: name.clone(),
         points,
         r_min_certified_m: r_min,
         r_max_certified_m: r_max,
         hand: hand.name().to_owned(),
-        neighbours: carried.neighbours,
-        transferred: carried.all,
-        transferred_closed: carried.closed,
-        transferred_with_hand: with_hand,
-        transferred_met: met,
-        transferred_of_other_count: carried.of_other_count,
+        neighbours: transferred.neighbours.iter().map(described).collect(),
+        transferred: transferred.all,
+        transferred_closed: transferred.closed,
+        transferred_with_hand: transferred.with_hand,
+        transferred_met: transferred.met,
+        transferred_of_other_count: transferred.of_other_count,
         poses: options.poses,
-        synthesized: found.outcomes.stable,
-        rejected: reasons(&found.outcomes).into_iter().collect(),
+        synthesized: planned.outcomes.stable,
+        rejected: reasons(&planned.outcomes).into_iter().collect(),
         grasps: ranked.len(),
-        best: ranked.first().map(|c| c.quality),
+        best: ranked.first().map(|g| g.quality()),
         contact_to_cloud_max_m: farthest_contact(&written.file, &cloud),
-        convention: target.convention.name.clone(),
+        convention: convention.name.clone(),
         grasps_json: written.grasps_json.display().to_string(),
         grasps_yaml: written.grasps_yaml.display().to_string(),
         index_html: written.index_html.display().to_string(),
@@ -124,7 +101,7 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
     if common.json {
         output::say_json(&line)?;
     } else {
-        line.say_found(&hand, &sentence(&found.outcomes));
+        line.say_found(&hand, &summary);
         written.print_table();
         line.say_end();
         written.print_paths();
@@ -132,57 +109,73 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
     if ranked.is_empty() {
         return Err(Failure::refused(format!(
             "{name}: no force-closed grasp found; {}; more --poses or --neighbours may help",
-            synthesis::why_none(&found.outcomes, &hand)
+            why_none(&planned.outcomes, &hand)
         )));
     }
     Ok(())
 }
 
-/// Grasps of the nearest known objects on the target, the best with a hand where one reaches.
-fn carried(
-    options: &GraspOptions,
-    common: &Common,
-    target: &Target,
-    hand: &Hand,
-) -> Result<Carried, Failure> {
-    let library = library::built_in()?;
-    let neighbours = transfer::neighbours(target, &library, options.neighbours)?;
-    let bar = output::progress(common.quiet, 0, "transferring");
-    let mut all = transfer::candidates(target, &neighbours, options.transfers, &bar)?;
-    bar.finish_and_clear();
-    if library.hand != hand.name() {
-        // Poses and joints of another hand say nothing of this one's.
-        all.iter_mut()
-            .filter_map(|c| c.carried.as_mut())
-            .for_each(|c| c.hand = None);
+/// The plan that the options describe.
+fn plan(options: &GraspOptions, common: &Common) -> Plan {
+    Plan {
+        transfer: TransferOptions {
+            neighbours: options.neighbours,
+            grasps: options.transfers,
+            keep: options.keep,
+            search: HandSearch {
+                starts: options.reach_starts,
+                seed: common.seed,
+                ..HandSearch::default()
+            },
+        },
+        poses: Poses {
+            count: options.poses,
+            seed: common.seed,
+            ..Poses::default()
+        },
+        keep: options.keep,
     }
-    let fits = |c: &Candidate| c.contacts.len() == hand.fingers().len();
-    let closed = all.iter().filter(|c| c.quality > 0.0).count();
-    let counted = all.len();
-    let mut kept = ranking::rank(all);
-    kept.truncate(options.keep);
-    let of_other_count = kept.iter().filter(|c| !fits(c)).count();
-    if kept.iter().any(fits) {
-        let bar = output::progress(common.quiet, kept.len(), "reaching contacts");
-        let (starts, seed) = (options.reach_starts, common.seed);
-        reach::give_hands(target, hand, &mut kept, starts, seed, &bar)?;
-        bar.finish_and_clear();
+}
+
+/// "S7 soup can (18.0 mm)".
+fn described((name, distance): &(String, f64)) -> String {
+    format!("{name} ({:.1} mm)", 1e3 * distance)
+}
+
+/// A progress bar per stage.
+struct Bars {
+    transfer: ProgressBar,
+    hands: ProgressBar,
+    poses: ProgressBar,
+}
+
+impl Bars {
+    fn new(quiet: bool) -> Self {
+        Self {
+            transfer: output::progress(quiet, 0, "transferring"),
+            hands: output::progress(quiet, 0, "looking for hands"),
+            poses: output::progress(quiet, 0, "closing the hand"),
+        }
     }
-    let describe = |n: &transfer::Neighbour| {
-        format!(
-            "{} {} ({:.1} mm)",
-            n.entry.id,
-            n.entry.name,
-            1e3 * n.distance
-        )
-    };
-    Ok(Carried {
-        all: counted,
-        closed,
-        of_other_count,
-        neighbours: neighbours.iter().map(describe).collect(),
-        kept,
-    })
+
+    fn show(&self, progress: Progress) {
+        let bar = match progress.stage {
+            Stage::Transfer => &self.transfer,
+            Stage::Reach => &self.hands,
+            Stage::Synthesis => &self.poses,
+        };
+        bar.set_length(progress.total as u64);
+        bar.inc(1);
+        if progress.done == progress.total {
+            bar.finish_and_clear();
+        }
+    }
+
+    fn finish(&self) {
+        for bar in [&self.transfer, &self.hands, &self.poses] {
+            bar.finish_and_clear();
+        }
+    }
 }
 
 /// The cloud given, or the built-in unseen object.

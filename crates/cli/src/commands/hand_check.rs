@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::hands::findings::{self, Checked, Finding};
 use crate::hands::trial::{self, Trial};
 use crate::hands::{page, spec_path};
-use crate::plan::synthesis::{reasons, sentence, why_none};
+use crate::outcomes::{reasons, sentence, why_none};
 use crate::{input, output};
 
 #[derive(Serialize)]

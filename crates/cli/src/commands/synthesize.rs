@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use grasp::Convention;
-use hand::{Hand, Synthesis};
+use hand::{Hand, OutcomeCounts};
+use moduli::{Grasps, Measure, Poses, ranked};
 use serde::Serialize;
 
 use crate::args::{Common, SynthesizeOptions};
 use crate::failure::Failure;
-use crate::plan::result::{self, Written};
-use crate::plan::synthesis::{self, Request, reasons, sentence};
-use crate::plan::{Fitted, Target, ranking};
+use crate::outcomes::{reasons, sentence, why_none};
+use crate::result::{self, Written};
 use crate::{hands, input, output};
 
 /// Power grasps begin nearer than the least stand-off of grasps with the tips, by up to this share of
@@ -45,32 +45,44 @@ pub(crate) fn run(options: &SynthesizeOptions, common: &Common) -> Result<(), Fa
     let start = Instant::now();
     let convention = input::convention(&options.convention)?;
     let hand = hands::load(&options.hand)?;
-    let request = request(options, common, &hand, &convention)?;
-    let (name, fitted) = Fitted::read(&options.shape)?;
-    let target = Target::new(&name, &fitted, &convention);
+    let poses = poses(options, common, &hand, &convention)?;
+    let object = input::object(&options.shape)?;
+    let name = object.name();
+    let refused = |e: moduli::Error| Failure::refused(format!("synthesis on {name}: {e}"));
+    let measure = object.measure(&convention).map_err(refused)?;
     let bar = output::progress(common.quiet, options.poses, "closing the hand");
-    let found = synthesis::synthesize(&target, &hand, &request, &bar)?;
+    let found = measure
+        .synthesize_watched(&hand, &poses, &|| bar.inc(1))
+        .map_err(refused)?;
     bar.finish_and_clear();
 
-    let ranked = ranking::rank(synthesis::candidates(&found, options.keep));
+    let outcomes = found.outcomes().cloned().unwrap_or_default();
+    let ranked = ranked(found.iter().take(options.keep).cloned().collect());
     let folder = options
         .output
         .clone()
         .unwrap_or_else(|| PathBuf::from("out").join(input::stem(&options.shape)));
-    let summary = format!("Hand {}: {}.", hand.name(), sentence(&found.outcomes));
+    let summary = format!("Hand {}: {}.", hand.name(), sentence(&outcomes));
     let facts = vec![summary.clone()];
-    let written = result::write(&folder, &target, None, &hand, &ranked, facts)?;
+    let written = result::write(&folder, &measure, None, &hand, &ranked, facts)?;
     if common.json {
         let seconds = start.elapsed().as_secs_f64();
-        output::say_json(&line(&target, &hand, &request, &found, &written, seconds))?;
+        let run = Run {
+            measure: &measure,
+            hand: &hand,
+            poses: &poses,
+            found: &found,
+            outcomes: &outcomes,
+        };
+        output::say_json(&run.line(&written, seconds))?;
     } else {
         output::say(format!("{name}: {summary}"));
         written.print_table();
         output::say(format!(
             "{} of {} stable grasps kept under convention `{}`, {:.1} s",
             ranked.len(),
-            found.outcomes.stable,
-            target.convention.name,
+            outcomes.stable,
+            convention.name,
             start.elapsed().as_secs_f64()
         ));
         written.print_paths();
@@ -79,18 +91,18 @@ pub(crate) fn run(options: &SynthesizeOptions, common: &Common) -> Result<(), Fa
         return Err(Failure::refused(format!(
             "{name}: 0 grasps of the hand {}: {}",
             hand.name(),
-            synthesis::why_none(&found.outcomes, &hand)
+            why_none(&outcomes, &hand)
         )));
     }
     Ok(())
 }
 
-fn request(
+fn poses(
     options: &SynthesizeOptions,
     common: &Common,
     hand: &Hand,
     convention: &Convention,
-) -> Result<Request, Failure> {
+) -> Result<Poses, Failure> {
     let least_quality = options.least_quality.unwrap_or(convention.stable_above);
     if !(least_quality.is_finite() && least_quality >= 0.0) {
         return Err(Failure::usage(format!(
@@ -107,59 +119,64 @@ fn request(
             ))
         })
     };
-    let mut preshapes: Vec<usize> = options
+    let preshapes: Vec<usize> = options
         .preshape
         .iter()
         .map(index)
         .collect::<Result<_, _>>()?;
-    if preshapes.is_empty() {
-        preshapes = (0..hand.preshapes().len()).collect();
-    }
     let (least, _) = hand.standoff();
     let nearer = options
         .power
         .then_some((least - POWER_NEARER * least.abs(), least));
-    Ok(Request {
-        poses: options.poses,
+    Ok(Poses {
+        count: options.poses,
         preshapes,
-        least_quality,
+        least_quality: Some(least_quality),
         standoff: options.standoff.or(nearer),
         power: options.power,
         seed: common.seed,
     })
 }
 
-fn line<'a>(
-    target: &'a Target,
+/// What a run was and what it found.
+struct Run<'a> {
+    measure: &'a Measure<'a>,
     hand: &'a Hand,
-    request: &Request,
-    found: &Synthesis,
-    written: &Written,
-    seconds: f64,
-) -> SynthesizeLine<'a> {
-    let mut because = BTreeMap::new();
-    for (rejection, count) in &found.outcomes.rejected {
-        *because.entry(rejection.describe(hand)).or_default() += count;
-    }
-    let qualities: Vec<f64> = found.grasps.iter().map(|g| g.quality).collect();
-    let name_of = |p: &usize| hand.preshapes()[*p].name.as_str();
-    SynthesizeLine {
-        object: target.name,
-        hand: hand.name(),
-        fingers: hand.fingers().len(),
-        preshapes: request.preshapes.iter().map(name_of).collect(),
-        poses: found.outcomes.total(),
-        stable: found.outcomes.stable,
-        kept: written.file.grasps.len(),
-        rejected: reasons(&found.outcomes).into_iter().collect(),
-        because,
-        best: qualities.first().copied(),
-        mean: (!qualities.is_empty())
-            .then(|| qualities.iter().sum::<f64>() / qualities.len() as f64),
-        convention: &target.convention.name,
-        grasps_json: written.grasps_json.display().to_string(),
-        grasps_yaml: written.grasps_yaml.display().to_string(),
-        index_html: written.index_html.display().to_string(),
-        seconds,
+    poses: &'a Poses,
+    found: &'a Grasps,
+    outcomes: &'a OutcomeCounts,
+}
+
+impl<'a> Run<'a> {
+    fn line(&self, written: &Written, seconds: f64) -> SynthesizeLine<'a> {
+        let mut because = BTreeMap::new();
+        for (rejection, count) in &self.outcomes.rejected {
+            *because.entry(rejection.describe(self.hand)).or_default() += count;
+        }
+        let qualities: Vec<f64> = self.found.iter().map(|g| g.quality()).collect();
+        let preshapes = self.hand.preshapes().iter().enumerate();
+        let drawn = &self.poses.preshapes;
+        SynthesizeLine {
+            object: self.measure.object().name(),
+            hand: self.hand.name(),
+            fingers: self.hand.fingers().len(),
+            preshapes: preshapes
+                .filter(|(i, _)| drawn.is_empty() || drawn.contains(i))
+                .map(|(_, p)| p.name.as_str())
+                .collect(),
+            poses: self.outcomes.total(),
+            stable: self.outcomes.stable,
+            kept: written.file.grasps.len(),
+            rejected: reasons(self.outcomes).into_iter().collect(),
+            because,
+            best: qualities.first().copied(),
+            mean: (!qualities.is_empty())
+                .then(|| qualities.iter().sum::<f64>() / qualities.len() as f64),
+            convention: &self.measure.convention().name,
+            grasps_json: written.grasps_json.display().to_string(),
+            grasps_yaml: written.grasps_yaml.display().to_string(),
+            index_html: written.index_html.display().to_string(),
+            seconds,
+        }
     }
 }

@@ -6,6 +6,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use grasp::Convention;
+use moduli::Object;
+use nalgebra::Point3;
 use record::grasps::SourceRecord;
 use shape::{RadialField, Surface, algebra};
 use space::{
@@ -15,9 +17,9 @@ use space::{
 
 use crate::args::{Common, TransferOptions, TransferScheme};
 use crate::commands::ascend::PAPER_ASCENT;
-use crate::delivery::Movement;
 use crate::failure::Failure;
-use crate::placed::{Moved, Object, Placed, TraceStep};
+use crate::moved::{Given, Moved, TraceStep, given};
+use crate::movement::Movement;
 use crate::{input, limits};
 
 /// The paper's transfer (Sec. IV-E).
@@ -51,18 +53,19 @@ fn one_pair(
     common: &Common,
 ) -> Result<(), Failure> {
     let convention = input::convention(&options.moved.convention)?;
-    let (from, to) = (Object::read(from)?, Object::read(to)?);
-    let grasps = from.grasps(path)?;
+    let (from, to) = (input::object(from)?, input::object(to)?);
+    let grasps = given(&from, path)?;
     let transfer = between(&from, &to, &convention);
     let start = Instant::now();
-    let objective = Objective::new(&convention, &to.surface, &to.origin());
-    let scheme = prepare(options, &objective)?;
+    let measure = to
+        .measure(&convention)
+        .map_err(|e| Failure::usage(e.to_string()))?;
+    let scheme = prepare(options, &measure.objective())?;
     let origin = Origin::new(&from, &to);
     let movement = Movement {
         doing: "transferring",
         scheme: scheme_name(options),
-        object: &to,
-        objective: &objective,
+        measure: &measure,
         start,
     };
     movement.run(&grasps, &options.moved, common, |i, placed| {
@@ -91,8 +94,8 @@ fn scheme_name(options: &TransferOptions) -> &'static str {
 /// The pair of objects, each with the origin of its own cloud's frame.
 fn between<'a>(from: &'a Object, to: &'a Object, convention: &'a Convention) -> Transfer<'a> {
     let end = |object: &'a Object| TransferEnd {
-        surface: &object.surface,
-        object_origin: object.origin(),
+        surface: object.field(),
+        object_origin: object.frame().cloud_origin(),
     };
     Transfer::new(end(from), end(to), convention)
 }
@@ -126,8 +129,8 @@ struct Origin {
 impl Origin {
     fn new(from: &Object, to: &Object) -> Self {
         Self {
-            name: from.record.name.clone(),
-            distance: algebra::distance(from.surface.shape(), to.surface.shape()),
+            name: from.name().to_owned(),
+            distance: algebra::distance(from.shape(), to.shape()),
         }
     }
 }
@@ -137,7 +140,7 @@ fn carry(
     scheme: &Scheme,
     transfer: &Transfer,
     to: &Object,
-    placed: &Placed,
+    given: &Given,
     origin: &Origin,
 ) -> Result<Moved, TransferError> {
     let mut steps = Vec::new();
@@ -146,7 +149,7 @@ fn carry(
             steps.push(TraceStep::new(t, step, points(transfer, to, t, step)));
         }
     };
-    let start = &placed.directions;
+    let start = &given.directions;
     let end: Transferred = match scheme {
         Scheme::Ours(scheme, constraints) => {
             scheme.carry_traced(transfer, start, constraints, keep)?
@@ -172,12 +175,11 @@ fn carry(
 
 /// Contacts on γ(t), where r = (1−t) r₁ + t r₂, in the frame of the target's cloud.
 fn points(transfer: &Transfer, to: &Object, t: f64, step: &Step) -> Vec<[f64; 3]> {
-    let centre = to.record.centre_in_cloud().coords;
     let on = |surface: &RadialField, p| surface.point(p).coords;
+    let between =
+        |p| Point3::from(on(transfer.source(), p) * (1.0 - t) + on(transfer.target(), p) * t);
     step.contacts
         .iter()
-        .map(|p| {
-            (on(transfer.source(), p) * (1.0 - t) + on(transfer.target(), p) * t + centre).into()
-        })
+        .map(|p| to.frame().to_cloud(&between(p)).into())
         .collect()
 }

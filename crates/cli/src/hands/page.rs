@@ -7,7 +7,7 @@ use report::{Block, Item, Mesh, Page, Part, SceneCell, SceneGrid, Section, Surfa
 use super::findings::Checked;
 use super::trial::Trial;
 use crate::failure::Failure;
-use crate::plan::synthesis::sentence;
+use crate::outcomes::sentence;
 
 /// Share of the closing motion in the middle picture.
 const HALF: f64 = 0.5;
@@ -56,7 +56,7 @@ fn pictures(hand: &Hand, trial: &Trial) -> Result<Section, Failure> {
             None => cell("no grasp of the ball", Vec::new()),
             Some(grasp) => {
                 let mut items = drawn(hand, &grasp.joints, false)?;
-                items.push(ball(trial, &grasp.object_from_palm.inverse()));
+                items.push(ball(trial, &grasp.centred_from_palm.inverse()));
                 cell("on the ball", items);
             }
         }

@@ -1,14 +1,11 @@
 //! A hand tried on a ball: the easiest object there is.
 
 use grasp::Convention;
-use hand::{Hand, HandGrasp, OutcomeCounts};
-use indicatif::ProgressBar;
-use nalgebra::Point3;
+use hand::{Hand, OutcomeCounts};
+use moduli::{Grasp, HandPlacement, Object, Poses, Source};
 use shape::RadialShape;
 
 use crate::failure::Failure;
-use crate::plan::synthesis::{Request, synthesize};
-use crate::plan::{Fitted, Target};
 
 /// Poses tried.
 const POSES: usize = 200;
@@ -20,7 +17,7 @@ pub(crate) struct Trial {
     pub(crate) ball: RadialShape,
     pub(crate) outcomes: OutcomeCounts,
     /// By pre-shape, the best grasp.
-    pub(crate) best: Vec<Option<HandGrasp>>,
+    pub(crate) best: Vec<Option<HandPlacement>>,
 }
 
 /// Closes the hand on a ball from 200 poses, under the paper's convention.
@@ -33,28 +30,27 @@ pub(crate) fn on_ball(hand: &Hand, diameter_mm: f64, seed: u64) -> Result<Trial,
     }
     let sphere = || RadialShape::sphere(3, 0.5 * diameter);
     let ball = sphere().map_err(|e| Failure::other(format!("the ball: {e}")))?;
-    let fitted = Fitted {
-        shape: ball.clone(),
-        centre_in_cloud: Point3::origin(),
-        rms: 0.0,
-        points: 0,
-    };
-    let rule = Convention::paper();
-    let target = Target::new("a ball", &fitted, &rule);
-    let request = Request {
-        poses: POSES,
-        preshapes: (0..hand.preshapes().len()).collect(),
-        least_quality: rule.stable_above,
-        standoff: None,
-        power: false,
+    let object = Object::from_shape("a ball", ball.clone());
+    let measure = object
+        .measure(&Convention::paper())
+        .map_err(|e| Failure::other(e.to_string()))?;
+    let poses = Poses {
+        count: POSES,
         seed,
+        ..Poses::default()
     };
-    let found = synthesize(&target, hand, &request, &ProgressBar::hidden())?;
-    let best_of = |p: usize| found.grasps.iter().find(|g| g.preshape == p).cloned();
+    let found = measure
+        .synthesize(hand, &poses)
+        .map_err(|e| Failure::refused(format!("synthesis on a ball: {e}")))?;
+    let best_of = |p: usize| {
+        let mut ranked = found.iter();
+        let of_preshape = |g: &&Grasp| g.source() == &Source::Synthesis { preshape: p };
+        ranked.find(of_preshape).and_then(Grasp::hand).cloned()
+    };
     Ok(Trial {
         diameter,
         ball,
         best: (0..hand.preshapes().len()).map(best_of).collect(),
-        outcomes: found.outcomes,
+        outcomes: found.outcomes().cloned().unwrap_or_default(),
     })
 }

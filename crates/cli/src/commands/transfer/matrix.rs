@@ -8,20 +8,20 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use grasp::Convention;
+use moduli::Object;
 use rayon::prelude::*;
 use record::GraspsFile;
 use run::ledger::{is_sealed, seal};
 use run::{Digest, Key};
 use serde::Serialize;
 use serde_json::json;
-use space::Objective;
 use space::transfer::run_jobs;
 
 use super::{Origin, between, carry, failed, prepare, scheme_name};
 use crate::args::{Common, TransferOptions};
-use crate::delivery::move_all;
 use crate::failure::Failure;
-use crate::placed::{Object, Placed};
+use crate::moved::{self, Given, given};
+use crate::movement::move_all;
 use crate::{files, input, output};
 
 /// A table of all pairs, written when all are done.
@@ -39,7 +39,7 @@ struct Side {
 struct Source {
     side: Side,
     path: PathBuf,
-    grasps: Vec<Placed>,
+    grasps: Vec<Given>,
     digest: Digest,
 }
 
@@ -119,7 +119,7 @@ fn sources(options: &TransferOptions) -> Result<Vec<Source>, Failure> {
     let sides = distinct(&options.from)?;
     let read = |(side, path): (Side, &PathBuf)| {
         Ok(Source {
-            grasps: side.object.grasps(path)?,
+            grasps: given(&side.object, path)?,
             digest: Digest::of(&input::read(path)?),
             path: path.clone(),
             side,
@@ -142,7 +142,7 @@ fn distinct(paths: &[PathBuf]) -> Result<Vec<Side>, Failure> {
     let read = |path: &PathBuf| {
         Ok(Side {
             stem: input::stem(path),
-            object: Object::read(path)?,
+            object: input::object(path)?,
             digest: Digest::of(&input::read(path)?),
         })
     };
@@ -200,14 +200,16 @@ impl Pair<'_> {
         let convention = self.rule;
         let (from, to) = (&self.from.side.object, &self.to.object);
         let transfer = between(from, to, convention);
-        let objective = Objective::new(convention, &to.surface, &to.origin());
-        let scheme = prepare(options, &objective)?;
+        let measure = to
+            .measure(convention)
+            .map_err(|e| Failure::usage(e.to_string()))?;
+        let scheme = prepare(options, &measure.objective())?;
         let origin = Origin::new(from, to);
         let moved = move_all(&self.from.grasps, |i, placed| {
             carry(options, &scheme, &transfer, to, placed, &origin)
                 .map_err(|e| failed(&self.from.path, i, &e))
         })?;
-        let file = to.file(&objective, &moved);
+        let file = moved::file(&measure, &moved)?;
         let value = self
             .sealed(&file, scheme_name(options))
             .map_err(unencodable)?;

@@ -1,14 +1,13 @@
 //! The page that `grasp` writes.
 
 use hand::{Hand, hand_meshes};
+use moduli::{Grasp, Measure};
 use nalgebra::{Isometry3, Vector3};
 use record::GraspsFile;
 use record::grasps::{ConventionRecord, EdgesRecord, JointRecord, JointUnit, SourceRecord};
 use report::{GraspPage, Mesh, PageGrasp, grasp_page};
 use shape::{PointCloud, TriangleMesh};
 
-use super::ranking::{cloud_from_palm, in_cloud};
-use super::{Candidate, Target};
 use crate::failure::Failure;
 
 /// The paper's mesh: 10,000 vertices.
@@ -18,18 +17,18 @@ const HANDS: usize = 12;
 
 /// The whole page, in the frame of the cloud; `more` are lines at the end of its head.
 pub(crate) fn render(
-    target: &Target,
+    measure: &Measure,
     cloud: Option<&PointCloud>,
     hand: &Hand,
-    ranked: &[Candidate],
+    ranked: &[Grasp],
     file: &GraspsFile,
     more: Vec<String>,
 ) -> Result<String, Failure> {
-    let centre = target.fit.centre_in_cloud;
-    let mesh = target.fit.shape.mesh(MESH, MESH);
+    let object = measure.object();
+    let mesh = object.shape().mesh(MESH, MESH);
     let mut hands_left = HANDS;
-    let grasps = ranked.iter().zip(&file.grasps).map(|(candidate, record)| {
-        let placement = candidate.hand.as_ref().filter(|_| hands_left > 0);
+    let grasps = ranked.iter().zip(&file.grasps).map(|(grasp, record)| {
+        let placement = grasp.hand().filter(|_| hands_left > 0);
         hands_left -= usize::from(placement.is_some());
         PageGrasp {
             label: String::new(),
@@ -38,16 +37,20 @@ pub(crate) fn render(
             contacts: record.contacts_m.clone(),
             inward_normals: record.inward_normals.clone(),
             details: details(record),
-            hand: placement.and_then(|p| drawn_hand(hand, &p.joints, &cloud_from_palm(p, &centre))),
+            hand: placement.and_then(|p| drawn_hand(hand, &p.joints, &grasp.palm_in_cloud()?)),
         }
     });
-    let mut subtitle_lines = facts(target, &mesh, &file.convention);
+    let mut subtitle_lines = facts(measure, &mesh, &file.convention);
     subtitle_lines.extend(more);
     let page = GraspPage {
-        title: target.name.to_owned(),
+        title: object.name().to_owned(),
         subtitle_lines,
         mesh: Mesh {
-            vertices: mesh.vertices.iter().map(|p| in_cloud(p, &centre)).collect(),
+            vertices: mesh
+                .vertices
+                .iter()
+                .map(|p| object.frame().to_cloud(p).into())
+                .collect(),
             triangles: mesh.triangles,
         },
         cloud: cloud.map_or_else(Vec::new, |cloud| {
@@ -85,9 +88,10 @@ pub(crate) fn source_label(source: &SourceRecord) -> String {
     }
 }
 
-fn facts(target: &Target, mesh: &TriangleMesh, convention: &ConventionRecord) -> Vec<String> {
+fn facts(measure: &Measure, mesh: &TriangleMesh, convention: &ConventionRecord) -> Vec<String> {
     let size = 1e3 * extent(mesh);
-    let (low, high) = target.fit.shape.radius_bounds();
+    let object = measure.object();
+    let (low, high) = object.shape().radius_bounds();
     let torque = convention
         .torque_length_m
         .map_or(String::new(), |l| format!(", torques per {} mm", 1e3 * l));
@@ -98,12 +102,12 @@ fn facts(target: &Target, mesh: &TriangleMesh, convention: &ConventionRecord) ->
     vec![
         format!(
             "{} points, {:.0} × {:.0} × {:.0} mm; degree {}, fitted to {:.2} mm (root mean square).",
-            target.fit.points,
+            object.report().points,
             size.x,
             size.y,
             size.z,
-            target.fit.shape.degree(),
-            1e3 * target.fit.rms
+            object.shape().degree(),
+            1e3 * object.report().rms
         ),
         format!(
             "Proved: every point of the surface is between {:.1} and {:.1} mm from its centre.",

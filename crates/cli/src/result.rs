@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use hand::Hand;
+use moduli::{Grasp, Measure};
 use record::{GraspsFile, isaac_grasps};
 use shape::PointCloud;
 
-use super::{Candidate, Target, page, ranking};
 use crate::failure::Failure;
-use crate::output;
+use crate::{output, page};
 
 /// Rows of the table on standard output.
 const SHOWN: usize = 10;
@@ -25,13 +25,13 @@ pub(crate) struct Written {
 /// page's head.
 pub(crate) fn write(
     folder: &Path,
-    target: &Target,
+    measure: &Measure,
     cloud: Option<&PointCloud>,
     hand: &Hand,
-    ranked: &[Candidate],
+    ranked: &[Grasp],
     facts: Vec<String>,
 ) -> Result<Written, Failure> {
-    let file = ranking::grasps_file(target, hand, ranked);
+    let file = measure.grasps_file(hand, ranked);
     let written = Written {
         grasps_json: folder.join("grasps.json"),
         grasps_yaml: folder.join("grasps.yaml"),
@@ -39,7 +39,7 @@ pub(crate) fn write(
         file,
     };
     let file = &written.file;
-    let html = page::render(target, cloud, hand, ranked, file, facts)?;
+    let html = page::render(measure, cloud, hand, ranked, file, facts)?;
     output::write_file(&written.grasps_json, &output::encode(file)?)?;
     output::write_file(&written.grasps_yaml, isaac_grasps(file).as_bytes())?;
     output::write_file(&written.index_html, html.as_bytes())?;

@@ -3,15 +3,15 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
+use moduli::Measure;
 use moduli::records::convention_record;
 use rayon::prelude::*;
 use record::grasps::ConventionRecord;
 use serde::Serialize;
-use space::Objective;
 
 use crate::args::{Common, MoveOptions};
 use crate::failure::Failure;
-use crate::placed::{Moved, Object, Placed, TraceStep};
+use crate::moved::{self, Given, Moved, TraceStep};
 use crate::{files, output};
 
 /// Version of the layout of traces.
@@ -25,10 +25,8 @@ pub(crate) struct Movement<'a> {
     pub(crate) doing: &'static str,
     /// Its name in results.
     pub(crate) scheme: &'static str,
-    /// Where the grasps end.
-    pub(crate) object: &'a Object,
-    /// Quality there.
-    pub(crate) objective: &'a Objective,
+    /// Quality on the object on which the grasps end.
+    pub(crate) measure: &'a Measure<'a>,
     /// When the work began.
     pub(crate) start: Instant,
 }
@@ -36,8 +34,8 @@ pub(crate) struct Movement<'a> {
 /// Moves grasps over the threads; of several failures the one of the first grasp is returned, so
 /// that threads do not decide which.
 pub(crate) fn move_all(
-    grasps: &[Placed],
-    one: impl Fn(usize, &Placed) -> Result<Moved, Failure> + Sync,
+    grasps: &[Given],
+    one: impl Fn(usize, &Given) -> Result<Moved, Failure> + Sync,
 ) -> Result<Vec<Moved>, Failure> {
     let ends: Vec<Result<Moved, Failure>> = grasps
         .par_iter()
@@ -52,10 +50,10 @@ impl Movement<'_> {
     /// grasp is closed.
     pub(crate) fn run(
         &self,
-        grasps: &[Placed],
+        grasps: &[Given],
         options: &MoveOptions,
         common: &Common,
-        one: impl Fn(usize, &Placed) -> Result<Moved, Failure> + Sync,
+        one: impl Fn(usize, &Given) -> Result<Moved, Failure> + Sync,
     ) -> Result<(), Failure> {
         let results: Vec<&PathBuf> = options.output.iter().chain(&options.trace).collect();
         run::check_results(&results, &files::read_so_far())?;
@@ -70,7 +68,7 @@ impl Movement<'_> {
         }
         self.refuse_open(&moved)?;
         if let Some(path) = &options.output {
-            let file = self.object.file(self.objective, &moved);
+            let file = moved::file(self.measure, &moved)?;
             output::write_file(path, &output::encode(&file)?)?;
         }
         self.say(&moved, options, common.json)
@@ -83,7 +81,7 @@ impl Movement<'_> {
         let reason = moved.iter().find_map(|m| m.reason.as_deref());
         Err(Failure::refused(format!(
             "{}: none of {} grasps is force-closed: {}; more friction (--friction) or other grasps may help",
-            self.object.record.name,
+            self.measure.object().name(),
             moved.len(),
             reason.unwrap_or("no closed grasp was found")
         )))
@@ -92,9 +90,9 @@ impl Movement<'_> {
     fn trace_file<'a>(&'a self, moved: &'a [Moved]) -> TraceFile<'a> {
         TraceFile {
             version: TRACE_VERSION,
-            object: &self.object.record.name,
+            object: self.measure.object().name(),
             scheme: self.scheme,
-            convention: convention_record(self.objective.convention()),
+            convention: convention_record(self.measure.convention()),
             grasps: moved
                 .iter()
                 .map(|m| GraspTrace {
@@ -113,15 +111,15 @@ impl Movement<'_> {
         let count = moved.len() as f64;
         let path = |p: &Option<PathBuf>| p.as_ref().map(|p| p.display().to_string());
         let line = Summary {
-            object: &self.object.record.name,
+            object: self.measure.object().name(),
             scheme: self.scheme,
-            convention: &self.objective.convention().name,
+            convention: &self.measure.convention().name,
             grasps: moved.len(),
             improved: moved.iter().filter(|m| m.quality > m.start_quality).count(),
             below_start: moved.iter().filter(|m| m.quality < m.start_quality).count(),
             unstable: moved
                 .iter()
-                .filter(|m| !self.objective.convention().is_stable(m.quality))
+                .filter(|m| !self.measure.convention().is_stable(m.quality))
                 .count(),
             mean_start: moved.iter().map(|m| m.start_quality).sum::<f64>() / count,
             mean_final: moved.iter().map(|m| m.quality).sum::<f64>() / count,

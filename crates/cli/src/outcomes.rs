@@ -1,0 +1,58 @@
+//! What became of hand poses, in words.
+
+use hand::{Hand, OutcomeCounts};
+
+/// "96 of 200 poses give a stable grasp; 60 tip did not arrive, …".
+pub(crate) fn sentence(outcomes: &OutcomeCounts) -> String {
+    let mut parts: Vec<String> = reasons(outcomes)
+        .iter()
+        .filter(|(_, count)| *count > 0)
+        .map(|(reason, count)| format!("{count} {}", reason.replace('_', " ")))
+        .collect();
+    if parts.is_empty() {
+        parts.push("none rejected".to_owned());
+    }
+    format!(
+        "{} of {} hand poses give a stable grasp ({})",
+        outcomes.stable,
+        outcomes.total(),
+        parts.join(", ")
+    )
+}
+
+/// Poses that gave no stable grasp, by reason; all reasons, also those that did not occur.
+pub(crate) fn reasons(outcomes: &OutcomeCounts) -> Vec<(&'static str, usize)> {
+    let unstable = std::iter::once(("unstable", outcomes.unstable));
+    outcomes.by_reason().into_iter().chain(unstable).collect()
+}
+
+/// Why no pose gave a stable grasp: the commonest reason, where, and what to try.
+pub(crate) fn why_none(outcomes: &OutcomeCounts, hand: &Hand) -> String {
+    let counts = reasons(outcomes);
+    let Some((reason, count)) = counts.iter().max_by_key(|(_, count)| *count) else {
+        return "no pose was tried".to_owned();
+    };
+    let advice = match *reason {
+        "base_near_object" | "part_near_object" | "starts_in_object" => {
+            "the object may be too large for the hand, or the least stand-off (standoff_m of the TOML) too small"
+        }
+        "tip_did_not_arrive" | "no_contact" => {
+            "the object may be too small or too thin for the hand, or the stand-off (standoff_m of the TOML) too large"
+        }
+        "parts_near_each_other" => "the object may be too small for all fingers at once",
+        _ => "more friction (--friction) or a smaller --least-quality may help",
+    };
+    let of_reason = outcomes
+        .rejected
+        .iter()
+        .filter(|(r, _)| r.reason() == *reason);
+    let most = of_reason.max_by_key(|(_, count)| **count);
+    let place = most.map_or(String::new(), |(r, count)| {
+        format!(", {count} times because {}", r.describe(hand))
+    });
+    format!(
+        "{count} of {} poses ended as {}{place}; {advice}",
+        outcomes.total(),
+        reason.replace('_', " ")
+    )
+}
