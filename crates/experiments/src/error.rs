@@ -65,9 +65,9 @@ pub enum ExperimentError {
     /// The built-in hand could not be loaded.
     #[error(transparent)]
     Hand(#[from] hand::LoadError),
-    /// The object cannot take part in collision tests.
+    /// A step from scans to grasps failed.
     #[error(transparent)]
-    Collision(#[from] hand::ObjectError),
+    Grasps(#[from] moduli::Error),
     /// A quality could not be computed.
     #[error(transparent)]
     Quality(#[from] grasp::QualityError),
@@ -117,8 +117,8 @@ impl ExperimentError {
             | Self::Report(_)
             | Self::Record(_)
             | Self::Json(_)
-            | Self::Threads(_)
-            | Self::Hand(_) => 1,
+            | Self::Hand(_)
+            | Self::Threads(_) => 1,
             _ => 4,
         }
     }

@@ -1,8 +1,8 @@
 //! The library that grasps are transferred from: the twelve objects with their best hand grasps.
 
-use grasp::{Contact, Convention, Grasp};
-use hand::HandGrasp;
-use moduli::records::{library_grasp, shape_record};
+use grasp::{Contact, Convention};
+use moduli::records::library_grasp;
+use moduli::{Grasp, Grasps, Hand};
 use nalgebra::Point3;
 use record::{LibraryEntry, LibraryRecord};
 use shape::FitSettings;
@@ -10,7 +10,7 @@ use shape::FitSettings;
 use crate::error::ExperimentError;
 use crate::objects::{ObjectSource, Objects};
 use crate::paper;
-use crate::pipeline::{FittedObject, fit_all, synthesize};
+use crate::pipeline::{FittedScan, fit_all, synthesize};
 use crate::run::fit_settings;
 
 /// How a library is built.
@@ -68,7 +68,7 @@ pub fn build(settings: &LibrarySettings) -> Result<LibraryRecord, ExperimentErro
             reasons: set.refused.iter().map(reason).collect(),
         });
     }
-    let hand = hand::schunk_sdh()?;
+    let hand = Hand::schunk_sdh()?;
     let mut entries = Vec::with_capacity(set.objects.len());
     for fitted in &set.objects {
         let found = synthesize(
@@ -78,7 +78,7 @@ pub fn build(settings: &LibrarySettings) -> Result<LibraryRecord, ExperimentErro
             settings.poses,
             settings.seed,
         )?;
-        entries.push(entry(fitted, &found.grasps, settings));
+        entries.push(entry(fitted, &found, settings));
     }
     Ok(LibraryRecord {
         seed: settings.seed,
@@ -88,29 +88,27 @@ pub fn build(settings: &LibrarySettings) -> Result<LibraryRecord, ExperimentErro
     })
 }
 
-fn entry(fitted: &FittedObject, ranked: &[HandGrasp], settings: &LibrarySettings) -> LibraryEntry {
-    let name = &fitted.object.name;
-    let points = fitted.object.cloud.points().len();
+fn entry(fitted: &FittedScan, ranked: &Grasps, settings: &LibrarySettings) -> LibraryEntry {
     let radius = fitted.shape().coefficients().get(0, 0) / (4.0 * std::f64::consts::PI).sqrt();
     let spread = spread_out(ranked, radius, settings.separation, settings.grasps);
     LibraryEntry {
         id: fitted.id().to_owned(),
-        name: name.clone(),
-        shape: shape_record(name, &fitted.fit, points),
-        grasps: spread.into_iter().map(library_grasp).collect(),
+        name: fitted.scan.name.clone(),
+        shape: fitted.object.to_record(),
+        grasps: spread.into_iter().filter_map(library_grasp).collect(),
     }
 }
 
 /// The first grasps of a ranked list, at most `count`, without those nearer than `least` to an
 /// earlier one.
-fn spread_out(ranked: &[HandGrasp], radius: f64, least: f64, count: usize) -> Vec<&HandGrasp> {
-    let mut kept: Vec<&HandGrasp> = Vec::with_capacity(count);
-    for grasp in ranked {
+fn spread_out(ranked: &Grasps, radius: f64, least: f64, count: usize) -> Vec<&Grasp> {
+    let mut kept: Vec<&Grasp> = Vec::with_capacity(count);
+    for grasp in ranked.iter() {
         if kept.len() == count {
             break;
         }
-        let near = |other: &&HandGrasp| {
-            separation(&grasp.contacts, &other.contacts, radius).is_some_and(|d| d < least)
+        let near = |other: &&Grasp| {
+            separation(grasp.contacts(), other.contacts(), radius).is_some_and(|d| d < least)
         };
         if !kept.iter().any(near) {
             kept.push(grasp);
@@ -124,7 +122,7 @@ fn spread_out(ranked: &[HandGrasp], radius: f64, least: f64, count: usize) -> Ve
 ///
 /// Grasps that differ only in the order of the fingers are the same to an object.
 pub fn separation(a: &[Contact], b: &[Contact], radius: f64) -> Option<f64> {
-    let scaled = |order: &mut dyn Iterator<Item = &Contact>| Grasp {
+    let scaled = |order: &mut dyn Iterator<Item = &Contact>| grasp::Grasp {
         contacts: order
             .map(|c| Contact {
                 position: c.position / radius,

@@ -1,55 +1,52 @@
 //! The steps that experiments share: surfaces from clouds, and hand grasps on surfaces.
 
-use grasp::Convention;
-use hand::{
-    ClosingRules, CollisionObject, Hand, HandGrasp, PoseSampling, Synthesis, SynthesisParams,
-};
-use nalgebra::Point3;
+use moduli::{Convention, Grasp, Grasps, Hand, Object, Poses};
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use shape::{Fit, FitSettings, RadialField, RadialShape};
+use shape::{FitSettings, RadialField, RadialShape};
 use space::{Objective, Transfer, TransferEnd};
 use sph::Direction;
 
 use crate::error::ExperimentError;
 use crate::objects::{ObjectCloud, ObjectSource, Objects, Refused};
-use crate::run::{Purpose, Run, generator};
+use crate::run::{Purpose, Run, stream};
 
-/// An object with its surface.
+/// An object of an experiment: its scan, and the surface fitted to it.
 #[derive(Clone, Debug)]
-pub struct FittedObject {
-    /// The object and its cloud.
-    pub object: ObjectCloud,
-    /// Its surface.
-    pub fit: Fit,
-    /// The same surface, prepared for ascents.
-    pub surface: RadialField,
+pub struct FittedScan {
+    /// The scan.
+    pub scan: ObjectCloud,
+    /// The surface, and where the scan stood.
+    pub object: Object,
 }
 
-impl FittedObject {
+impl FittedScan {
     /// k for S_k, from 1.
     pub fn number(&self) -> usize {
-        self.object.number
+        self.scan.number
     }
 
     /// Its short name.
     pub fn id(&self) -> &str {
-        &self.object.id
+        &self.scan.id
     }
 
     /// The surface, in the centred frame.
     pub fn shape(&self) -> &RadialShape {
-        &self.fit.shape
+        self.object.shape()
     }
 
-    /// Origin of the cloud's frame in the centred frame, metres.
-    pub fn object_origin(&self) -> Point3<f64> {
-        Point3::from(-self.fit.centre_in_cloud.coords)
+    /// The surface, prepared for ascents; the first call takes some milliseconds.
+    pub fn field(&self) -> &RadialField {
+        self.object.field()
     }
 
-    /// Grasp quality on this surface.
-    pub fn objective(&self, convention: &Convention) -> Objective {
-        Objective::new(convention, self.shape(), &self.object_origin())
+    /// Grasp quality on this surface as a function of contacts.
+    ///
+    /// # Errors
+    /// A number of the convention is out of range.
+    pub fn objective(&self, convention: &Convention) -> Result<Objective, moduli::Error> {
+        Ok(self.object.measure(convention)?.objective())
     }
 }
 
@@ -59,14 +56,14 @@ pub struct FittedSet {
     /// Where they come from.
     pub source: ObjectSource,
     /// Fitted objects in order.
-    pub objects: Vec<FittedObject>,
+    pub objects: Vec<FittedScan>,
     /// Objects that could not be read or fitted.
     pub refused: Vec<Refused>,
 }
 
 impl FittedSet {
     /// The object S_k.
-    pub fn get(&self, number: usize) -> Option<&FittedObject> {
+    pub fn get(&self, number: usize) -> Option<&FittedScan> {
         self.objects.iter().find(|o| o.number() == number)
     }
 
@@ -81,17 +78,18 @@ impl FittedSet {
     }
 }
 
-fn describe(fitted: &FittedObject) -> Value {
+fn describe(fitted: &FittedScan) -> Value {
     let (low, high) = fitted.shape().radius_bounds();
+    let report = fitted.object.report();
     json!({
         "number": fitted.number(),
         "id": fitted.id(),
-        "name": fitted.object.name,
-        "points": fitted.object.cloud.points().len(),
+        "name": fitted.scan.name,
+        "points": report.points,
         "degree": fitted.shape().degree(),
-        "lambda": fitted.fit.lambda,
-        "rms_m": fitted.fit.rms,
-        "max_abs_m": fitted.fit.max_abs,
+        "lambda": report.lambda,
+        "rms_m": report.rms,
+        "max_abs_m": report.fit.as_ref().map(|fit| fit.max_abs),
         "r_min_certified_m": low,
         "r_max_certified_m": high,
         "volume_m3": fitted.shape().mass_properties().volume,
@@ -133,20 +131,18 @@ pub fn fitted_objects(
 
 /// Fits every cloud; those without a surface in M^rad join the refused.
 pub fn fit_all(objects: Objects, settings: &FitSettings) -> FittedSet {
-    let fits: Vec<Result<FittedObject, Refused>> = objects
+    let fits: Vec<Result<FittedScan, Refused>> = objects
         .clouds
         .into_par_iter()
-        .map(|object| match shape::fit::fit(&object.cloud, settings) {
-            Ok(fit) => Ok(FittedObject {
-                object,
-                surface: RadialField::new(fit.shape.clone()),
-                fit,
-            }),
-            Err(error) => Err(Refused {
-                id: object.id,
-                reason: error.to_string(),
-            }),
-        })
+        .map(
+            |scan| match Object::from_cloud(&scan.name, &scan.cloud, settings) {
+                Ok(object) => Ok(FittedScan { scan, object }),
+                Err(error) => Err(Refused {
+                    id: scan.id,
+                    reason: error.to_string(),
+                }),
+            },
+        )
         .collect();
     let mut set = FittedSet {
         source: objects.source,
@@ -162,38 +158,30 @@ pub fn fit_all(objects: Objects, settings: &FitSettings) -> FittedSet {
     set
 }
 
-/// Hand grasps on an object (Sec. IV-C): poses drawn first with the object's own generator, then
-/// evaluated in parallel, ranked by quality under the convention.
+/// Hand grasps on an object (Sec. IV-C), the best first under the convention; poses are drawn with
+/// the object's own generator.
+///
+/// # Errors
+/// A grasp of the hand cannot be computed on this surface.
 pub fn synthesize(
-    fitted: &FittedObject,
+    fitted: &FittedScan,
     hand: &Hand,
     convention: &Convention,
     poses: usize,
     seed: u64,
-) -> Result<Synthesis, ExperimentError> {
-    let surface = fitted.shape();
-    let objective = fitted.objective(convention);
-    let params = SynthesisParams {
-        poses,
-        sampling: PoseSampling::of_hand(hand),
-        rules: ClosingRules::default(),
-        convention: objective.convention().clone(),
-        centre: objective.centre(),
-        least_quality: convention.stable_above,
+) -> Result<Grasps, moduli::Error> {
+    let poses = Poses {
+        count: poses,
+        seed,
+        stream: stream(Purpose::Poses, fitted.number()),
+        ..Poses::default()
     };
-    let mut rng = generator(seed, Purpose::Poses, fitted.number());
-    let drawn = params.sampling.sample(surface, hand, poses, &mut rng);
-    let object = CollisionObject::new(surface)?;
-    let outcomes = drawn
-        .par_iter()
-        .map(|pose| hand::evaluate_pose(&object, hand, pose, &params))
-        .collect::<Result<Vec<_>, _>>()?;
-    Ok(hand::collect(outcomes))
+    fitted.object.measure(convention)?.synthesize(hand, &poses)
 }
 
-/// The contacts of grasps as directions.
-pub fn directions(grasps: &[Vec<HandGrasp>]) -> Vec<Vec<Vec<Direction>>> {
-    let of = |grasps: &Vec<HandGrasp>| grasps.iter().map(|g| g.directions.clone()).collect();
+/// The directions of the contacts of grasps.
+pub fn directions(grasps: &[Vec<Grasp>]) -> Vec<Vec<Vec<Direction>>> {
+    let of = |grasps: &Vec<Grasp>| grasps.iter().map(|g| g.directions().to_vec()).collect();
     grasps.iter().map(of).collect()
 }
 
@@ -206,14 +194,17 @@ pub fn best_grasps(
     set: &FittedSet,
     poses: usize,
     count: usize,
-) -> Result<Vec<Vec<HandGrasp>>, ExperimentError> {
+) -> Result<Vec<Vec<Grasp>>, ExperimentError> {
     run.say(&format!("closing the hand from {poses} poses an object"));
-    let hand = hand::schunk_sdh()?;
+    let hand = Hand::schunk_sdh()?;
+    // Surfaces are prepared here, so that no ascent is charged for it.
+    set.objects.par_iter().for_each(|fitted| {
+        fitted.field();
+    });
     let mut all = Vec::with_capacity(set.objects.len());
     for fitted in &set.objects {
-        let mut grasps = synthesize(fitted, &hand, &run.convention, poses, run.seed)?.grasps;
-        grasps.truncate(count);
-        all.push(grasps);
+        let found = synthesize(fitted, &hand, &run.convention, poses, run.seed)?;
+        all.push(found.iter().take(count).cloned().collect());
     }
     if all.iter().all(Vec::is_empty) {
         return Err(ExperimentError::NoGrasps { poses });
@@ -224,12 +215,12 @@ pub fn best_grasps(
 /// What both schemes need, from one object to another.
 pub fn transfer_between<'a>(
     run: &'a Run,
-    from: &'a FittedObject,
-    to: &'a FittedObject,
+    from: &'a FittedScan,
+    to: &'a FittedScan,
 ) -> Transfer<'a> {
-    let end = |object: &'a FittedObject| TransferEnd {
-        surface: &object.surface,
-        object_origin: object.object_origin(),
+    let end = |fitted: &'a FittedScan| TransferEnd {
+        surface: fitted.field(),
+        object_origin: fitted.object.frame().cloud_origin(),
     };
     Transfer::new(end(from), end(to), &run.convention)
 }

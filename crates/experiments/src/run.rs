@@ -105,11 +105,16 @@ pub enum Purpose {
     Starts = 6,
 }
 
-/// The generator of one purpose for the object (or sphere) of a number.
+/// The stream of a seed that one purpose uses for the object (or sphere) of a number.
 ///
 /// Streams of the catalogue's scans are below 2³², those of purposes above.
+pub fn stream(purpose: Purpose, number: usize) -> u64 {
+    ((purpose as u64) << 32) | number as u64
+}
+
+/// The generator of one purpose for the object (or sphere) of a number.
 pub fn generator(seed: u64, purpose: Purpose, number: usize) -> ChaCha8Rng {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    rng.set_stream(((purpose as u64) << 32) | number as u64);
+    rng.set_stream(stream(purpose, number));
     rng
 }

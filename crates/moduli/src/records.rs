@@ -1,14 +1,16 @@
 //! Stored types of `record` made from the types of computation, and turned back into them.
 
 use grasp::{CentreRule, Convention, ConventionError, EdgeNorm, Edges, TangentRule, TorqueLength};
-use hand::{HandGrasp, JointKind};
+use hand::JointKind;
 use record::grasps::{
     CentreRecord, ConventionRecord, EdgeNormRecord, EdgesRecord, JointRecord, JointUnit,
     TangentRecord,
 };
 use record::{LibraryGrasp, ShapeRecord};
-use shape::{Fit, RadialError, RadialShape};
+use shape::{RadialError, RadialShape};
 use sph::{Coefficients, CoefficientsError};
+
+use crate::grasp::Grasp;
 
 /// Why a stored shape cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -22,18 +24,6 @@ pub enum StoredShapeError {
     /// The centre is not finite.
     #[error("the centre of the stored shape is not finite")]
     Centre,
-}
-
-/// The record of a fit of `points` points.
-pub fn shape_record(name: &str, fit: &Fit, points: usize) -> ShapeRecord {
-    ShapeRecord {
-        name: name.to_owned(),
-        coefficients: fit.shape.coefficients().as_slice().to_vec(),
-        centre_in_cloud_m: fit.centre_in_cloud.into(),
-        lambda: fit.lambda,
-        rms_m: fit.rms,
-        points: points as u64,
-    }
 }
 
 /// The coefficients β of a stored shape; the radius is not proved positive.
@@ -55,20 +45,21 @@ pub fn stored_shape(record: &ShapeRecord) -> Result<RadialShape, StoredShapeErro
     Ok(RadialShape::new(stored_coefficients(record)?)?)
 }
 
-/// The record of a synthesized grasp in a library.
-pub fn library_grasp(grasp: &HandGrasp) -> LibraryGrasp {
-    let pose = &grasp.object_from_palm;
-    LibraryGrasp {
+/// The record of a grasp in a library; `None` for a grasp without a hand.
+pub fn library_grasp(grasp: &Grasp) -> Option<LibraryGrasp> {
+    let hand = grasp.hand()?;
+    let pose = &hand.centred_from_palm;
+    Some(LibraryGrasp {
         directions: grasp
-            .directions
+            .directions()
             .iter()
             .map(|p| p.into_inner().into())
             .collect(),
-        quality: grasp.quality,
+        quality: grasp.quality(),
         palm_translation_m: pose.translation.vector.into(),
         palm_quaternion_xyzw: pose.rotation.coords.into(),
-        joints_rad: grasp.joints.clone(),
-    }
+        joints_rad: hand.joints.clone(),
+    })
 }
 
 /// The value of a joint with its unit.

@@ -27,10 +27,12 @@ pub struct Poses {
     pub least_quality: Option<f64>,
     /// Seed of the poses: the same seed gives the same grasps on any number of threads.
     pub seed: u64,
+    /// Stream of that seed: the streams of one seed are independent of each other.
+    pub stream: u64,
 }
 
 impl Default for Poses {
-    /// The paper's 1,400 poses, all pre-shapes, fingertip grasps, seed 0.
+    /// The paper's 1,400 poses, all pre-shapes, fingertip grasps, seed 0, stream 0.
     fn default() -> Self {
         Self {
             count: 1400,
@@ -39,6 +41,7 @@ impl Default for Poses {
             power: false,
             least_quality: None,
             seed: 0,
+            stream: 0,
         }
     }
 }
@@ -102,6 +105,7 @@ impl Measure<'_> {
         };
         let object = CollisionObject::new(surface)?;
         let mut generator = ChaCha8Rng::seed_from_u64(poses.seed);
+        generator.set_stream(poses.stream);
         let drawn = params
             .sampling
             .sample(surface, hand, poses.count, &mut generator);

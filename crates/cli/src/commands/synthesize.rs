@@ -135,6 +135,7 @@ fn poses(
         standoff: options.standoff.or(nearer),
         power: options.power,
         seed: common.seed,
+        stream: 0,
     })
 }
 

@@ -42,7 +42,7 @@ fn all_numbers(threads: usize) -> Result<Value, ExperimentError> {
     pool.install(|| {
         let run = tiny_run();
         let set = tiny_set(&run)?;
-        let clouds: Vec<_> = set.objects.iter().map(|o| o.object.clone()).collect();
+        let clouds: Vec<_> = set.objects.iter().map(|o| o.scan.clone()).collect();
         let plan = ascent_plan();
         let ascent_grasps = best_grasps(&run, &set, plan.poses, plan.grasps)?;
         let carried_grasps = best_grasps(&run, &set, 60, 1)?;
@@ -169,7 +169,7 @@ fn every_convention_finds_stable_grasps_on_a_round_object() {
 fn errors_fall_with_the_degree_and_spheres_are_a_line() {
     let run = tiny_run();
     let set = tiny_set(&run).unwrap();
-    let clouds: Vec<_> = set.objects.iter().map(|o| o.object.clone()).collect();
+    let clouds: Vec<_> = set.objects.iter().map(|o| o.scan.clone()).collect();
     let fits = reconstruction::measure(&run, &reconstruction_plan(), &clouds).unwrap();
     for pair in fits.chunks(4) {
         let [coarse, fine] = [&pair[0].record, &pair[2].record];

@@ -1,6 +1,6 @@
 //! The paper's ascent and ours from the best grasps of every object.
 
-use hand::HandGrasp;
+use moduli::Grasp;
 use space::MonotoneAscent;
 use sph::Direction;
 
@@ -8,7 +8,7 @@ use super::findings::{Climb, DrawnClimb, ObjectClimbs, OurClimb, PaperClimb, Set
 use crate::error::ExperimentError;
 use crate::ledger::{self, ThreadSeconds, run_kept};
 use crate::paper;
-use crate::pipeline::{FittedObject, FittedSet, directions};
+use crate::pipeline::{FittedScan, FittedSet, directions};
 use crate::run::Run;
 
 /// Ascents from given grasps of every object: all ascents of the paper, then all of ours.
@@ -19,11 +19,11 @@ pub fn measure(
     run: &Run,
     settings: &Settings,
     set: &FittedSet,
-    grasps: &[Vec<HandGrasp>],
+    grasps: &[Vec<Grasp>],
 ) -> Result<(Vec<ObjectClimbs>, ThreadSeconds), ExperimentError> {
     let starts = directions(grasps);
     let key = ledger::key(run, set, &starts, settings)?;
-    let jobs: Vec<(&FittedObject, &[Direction])> = set
+    let jobs: Vec<(&FittedScan, &[Direction])> = set
         .objects
         .iter()
         .zip(&starts)
@@ -68,14 +68,14 @@ pub fn measure(
 fn climb_as_the_paper(
     run: &Run,
     settings: &Settings,
-    fitted: &FittedObject,
+    fitted: &FittedScan,
     start: &[Direction],
 ) -> Result<PaperClimb, ExperimentError> {
-    let mut objective = fitted.objective(&run.convention);
+    let mut objective = fitted.objective(&run.convention)?;
     let mut highest = 0.0_f64;
     let end = settings
         .ascent
-        .climb(&fitted.surface, start, &mut objective, |step| {
+        .climb(fitted.field(), start, &mut objective, |step| {
             highest = highest.max(step.quality);
         })?;
     let moved = start
@@ -91,13 +91,9 @@ fn climb_as_the_paper(
     })
 }
 
-fn climb(
-    run: &Run,
-    fitted: &FittedObject,
-    start: &[Direction],
-) -> Result<OurClimb, ExperimentError> {
-    let mut objective = fitted.objective(&run.convention);
-    let end = MonotoneAscent::default().climb(&fitted.surface, start, &mut objective, |_| {})?;
+fn climb(run: &Run, fitted: &FittedScan, start: &[Direction]) -> Result<OurClimb, ExperimentError> {
+    let mut objective = fitted.objective(&run.convention)?;
+    let end = MonotoneAscent::default().climb(fitted.field(), start, &mut objective, |_| {})?;
     Ok(OurClimb {
         last: end.quality,
         evaluations: end.evaluations,
@@ -110,13 +106,13 @@ pub(super) fn drawn(
     run: &Run,
     settings: &Settings,
     set: &FittedSet,
-    grasps: &[Vec<HandGrasp>],
+    grasps: &[Vec<Grasp>],
     found: &[ObjectClimbs],
 ) -> Result<Vec<DrawnClimb>, ExperimentError> {
-    let mut all: Vec<(&FittedObject, &[Direction], &PaperClimb)> = Vec::new();
+    let mut all: Vec<(&FittedScan, &[Direction], &PaperClimb)> = Vec::new();
     for ((fitted, grasps), of) in set.objects.iter().zip(grasps).zip(found) {
         let pairs = grasps.iter().zip(&of.climbs);
-        all.extend(pairs.map(|(g, c)| (fitted, &g.directions[..], &c.paper)));
+        all.extend(pairs.map(|(g, c)| (fitted, g.directions(), &c.paper)));
     }
     let gain = |climb: &PaperClimb| climb.last - climb.initial;
     all.sort_by(|a, b| gain(b.2).total_cmp(&gain(a.2)));
@@ -139,11 +135,11 @@ pub(super) fn drawn(
 fn draw(
     run: &Run,
     settings: &Settings,
-    fitted: &FittedObject,
+    fitted: &FittedScan,
     start: &[Direction],
     climb: &PaperClimb,
 ) -> Result<DrawnClimb, ExperimentError> {
-    let mut objective = fitted.objective(&run.convention);
+    let mut objective = fitted.objective(&run.convention)?;
     let mut states = Vec::new();
     let mut count = 0;
     let keep = |step: &space::Step| {
@@ -154,7 +150,7 @@ fn draw(
     };
     let end = settings
         .ascent
-        .climb(&fitted.surface, start, &mut objective, keep)?;
+        .climb(fitted.field(), start, &mut objective, keep)?;
     states.push(end.contacts);
     Ok(DrawnClimb {
         label: format!("{} Q {:.2} → {:.2}", fitted.id(), climb.initial, climb.last),

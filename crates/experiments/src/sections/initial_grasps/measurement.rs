@@ -1,12 +1,13 @@
 //! Hand poses that are closed on every object.
 
 use grasp::Convention;
-use hand::{HandGrasp, OutcomeCounts, Synthesis};
+use hand::OutcomeCounts;
+use moduli::{Grasp, Grasps, Hand, Source};
 
 use super::findings::{ObjectGrasps, Settings, UnderConvention};
 use crate::error::ExperimentError;
 use crate::paper;
-use crate::pipeline::{FittedObject, FittedSet, synthesize};
+use crate::pipeline::{FittedScan, FittedSet, synthesize};
 use crate::run::Run;
 use crate::statistics::{rank_correlation, share, summary};
 
@@ -16,7 +17,7 @@ pub fn measure(
     settings: &Settings,
     set: &FittedSet,
 ) -> Result<Vec<ObjectGrasps>, ExperimentError> {
-    let hand = hand::schunk_sdh()?;
+    let hand = Hand::schunk_sdh()?;
     let conventions = all_conventions();
     let preshapes = hand.preshapes().len();
     let mut all = Vec::with_capacity(set.objects.len());
@@ -25,7 +26,7 @@ pub fn measure(
         let found = synthesize(fitted, &hand, &run.convention, settings.poses, run.seed)?;
         let under = conventions
             .iter()
-            .map(|convention| under(convention, fitted, &found.grasps))
+            .map(|convention| under(convention, fitted, &found))
             .collect::<Result<_, _>>()?;
         all.push(describe(fitted, &found, preshapes, under));
     }
@@ -38,19 +39,23 @@ pub(super) fn all_conventions() -> Vec<Convention> {
 }
 
 fn describe(
-    fitted: &FittedObject,
-    found: &Synthesis,
+    fitted: &FittedScan,
+    found: &Grasps,
     preshapes: usize,
     conventions: Vec<UnderConvention>,
 ) -> ObjectGrasps {
-    let OutcomeCounts {
-        stable, unstable, ..
-    } = found.outcomes;
-    let poses = found.outcomes.total();
-    let rejected = found.outcomes.by_reason();
-    let qualities: Vec<f64> = found.grasps.iter().map(|g| g.quality).collect();
+    let none = OutcomeCounts::default();
+    let outcomes = found.outcomes().unwrap_or(&none);
+    let (stable, unstable) = (outcomes.stable, outcomes.unstable);
+    let poses = outcomes.total();
+    let rejected = outcomes.by_reason();
+    let qualities: Vec<f64> = found.iter().map(Grasp::quality).collect();
     let first = |count: usize| &qualities[..count.min(qualities.len())];
-    let of_preshape = |k| found.grasps.iter().filter(|g| g.preshape == k).count();
+    let of_preshape = |k| {
+        let from =
+            |g: &&Grasp| matches!(g.source(), Source::Synthesis { preshape } if *preshape == k);
+        found.iter().filter(from).count()
+    };
     ObjectGrasps {
         id: fitted.id().to_owned(),
         poses,
@@ -63,7 +68,7 @@ fn describe(
         stable_of_1400: (stable * paper::HAND_POSES) as f64 / poses.max(1) as f64,
         stable_by_preshape: (0..preshapes).map(of_preshape).collect(),
         best_qualities: first(paper::BEST_GRASPS).to_vec(),
-        best_contacts: found.grasps.first().map(|g| g.directions.clone()),
+        best_contacts: found.iter().next().map(|g| g.directions().to_vec()),
         best: summary(first(paper::BEST_GRASPS)),
         very_best: summary(first(paper::VERY_BEST_GRASPS)),
         conventions,
@@ -72,15 +77,15 @@ fn describe(
 
 fn under(
     convention: &Convention,
-    fitted: &FittedObject,
-    grasps: &[HandGrasp],
+    fitted: &FittedScan,
+    grasps: &Grasps,
 ) -> Result<UnderConvention, ExperimentError> {
-    let mut objective = fitted.objective(convention);
+    let mut objective = fitted.objective(convention)?;
     let qualities = grasps
         .iter()
-        .map(|grasp| objective.quality(&grasp.contacts))
+        .map(|grasp| objective.quality(grasp.contacts()))
         .collect::<Result<Vec<f64>, _>>()?;
-    let ranked: Vec<f64> = grasps.iter().map(|g| g.quality).collect();
+    let ranked: Vec<f64> = grasps.iter().map(Grasp::quality).collect();
     let closed = qualities.iter().filter(|q| **q > 0.0).count();
     Ok(UnderConvention {
         name: convention.name.clone(),

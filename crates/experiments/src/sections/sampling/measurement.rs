@@ -9,7 +9,7 @@ use sph::{Coefficients, index};
 use super::findings::{DrawnBand, Noise, Settings};
 use crate::error::ExperimentError;
 use crate::paper;
-use crate::pipeline::{FittedObject, FittedSet};
+use crate::pipeline::{FittedScan, FittedSet};
 use crate::run::{Purpose, Run, generator};
 use crate::statistics::{mean, share};
 
@@ -57,7 +57,7 @@ pub fn measure(
 
 fn draw(
     run: &Run,
-    object: &FittedObject,
+    object: &FittedScan,
     band: Range<usize>,
     sigma: f64,
     stream: usize,
@@ -74,7 +74,7 @@ fn draw(
     let point = perturbed(shape, band, sigma, paper::CONTACTS, &mut rng).ok();
     let quality = match &point {
         Some(point) => {
-            let origin = object.object_origin();
+            let origin = object.object.frame().cloud_origin();
             space::Objective::new(&run.convention, &point.surface, &origin)
                 .quality_at(&point.surface, &point.contacts)?
         }

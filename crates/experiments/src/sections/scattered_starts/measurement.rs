@@ -1,6 +1,6 @@
 //! A sample of transfers, done by both schemes.
 
-use hand::HandGrasp;
+use moduli::Grasp;
 use rand::seq::index;
 use serde::{Deserialize, Serialize};
 use space::Continuation;
@@ -29,7 +29,7 @@ pub fn measure(
     run: &Run,
     settings: &Settings,
     set: &FittedSet,
-    grasps: &[Vec<HandGrasp>],
+    grasps: &[Vec<Grasp>],
 ) -> Result<(Vec<Compared>, ThreadSeconds), ExperimentError> {
     let starts = directions(grasps);
     let key = ledger::key(run, set, &starts, settings)?;
@@ -95,7 +95,7 @@ fn scattered(
 ) -> Result<Runs, ExperimentError> {
     let target = &set.objects[to];
     let mut rng = generator(run.seed, Purpose::Starts, 1 + sample);
-    let mut objective = target.objective(&run.convention);
+    let mut objective = target.objective(&run.convention)?;
     let mut runs = Runs {
         ends: Vec::with_capacity(settings.runs),
         evaluations: 0,
@@ -104,7 +104,7 @@ fn scattered(
         let start = ContactSampling::Around(contacts, SPREAD).draw(&mut rng);
         let end = settings
             .ascent
-            .climb(&target.surface, &start, &mut objective, |_| {})?;
+            .climb(target.field(), &start, &mut objective, |_| {})?;
         runs.ends.push(end.quality);
         runs.evaluations += end.evaluations;
     }

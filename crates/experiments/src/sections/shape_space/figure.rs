@@ -6,7 +6,7 @@ use report::{
 
 use super::findings::{Place, ShapeSpace};
 use crate::drawing::{section, surface};
-use crate::pipeline::{FittedObject, FittedSet};
+use crate::pipeline::{FittedScan, FittedSet};
 use crate::table::{Table, millimetres, number, per_cent};
 
 pub(super) fn table(ours: &ShapeSpace) -> Table {
@@ -71,14 +71,14 @@ pub(super) fn figures(set: &FittedSet, found: &ShapeSpace) -> Vec<Section> {
 }
 
 fn grid(set: &FittedSet) -> SceneGrid {
-    let cell = |o: &FittedObject| SceneCell {
+    let cell = |o: &FittedScan| SceneCell {
         label: format!(
             "{} {}",
             o.id(),
-            if o.id() == o.object.name {
+            if o.id() == o.scan.name {
                 ""
             } else {
-                &o.object.name
+                &o.scan.name
             }
         ),
         items: vec![surface(o.shape())],

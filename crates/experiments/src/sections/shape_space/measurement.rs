@@ -9,7 +9,7 @@ use sph::Coefficients;
 use super::findings::{Passing, Place, Settings, ShapeSpace, SphereLine};
 use crate::error::ExperimentError;
 use crate::paper;
-use crate::pipeline::{FittedObject, FittedSet};
+use crate::pipeline::{FittedScan, FittedSet};
 use crate::run::{Purpose, Run, generator};
 
 /// Builds the space and measures it.
@@ -78,7 +78,7 @@ fn fit_spheres(run: &Run, settings: &Settings) -> Result<Vec<(f64, RadialShape)>
 }
 
 /// The ends of the paper's deformations that exist in the set.
-fn ways(set: &FittedSet) -> Vec<(&FittedObject, &FittedObject)> {
+fn ways(set: &FittedSet) -> Vec<(&FittedScan, &FittedScan)> {
     let Some(from) = set.get(paper::DEFORMED_FROM) else {
         return Vec::new();
     };
@@ -142,18 +142,13 @@ fn passings(set: &FittedSet) -> Vec<Passing> {
         .collect()
 }
 
-fn passing(
-    set: &FittedSet,
-    shape: &FittedObject,
-    from: &FittedObject,
-    to: &FittedObject,
-) -> Passing {
-    let beta = |o: &FittedObject| o.shape().coefficients().clone();
+fn passing(set: &FittedSet, shape: &FittedScan, from: &FittedScan, to: &FittedScan) -> Passing {
+    let beta = |o: &FittedScan| o.shape().coefficients().clone();
     let (here, start, end) = (beta(shape), beta(from), beta(to));
     let t = foot(&here, &start, &end).clamp(0.0, 1.0);
     let there = point_between(&start, &end, t);
     let distance = there.distance(&here);
-    let nearer = |o: &FittedObject| beta(o).distance(&there) < distance;
+    let nearer = |o: &FittedScan| beta(o).distance(&there) < distance;
     Passing {
         id: shape.id().to_owned(),
         from: from.id().to_owned(),

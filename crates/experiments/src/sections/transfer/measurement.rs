@@ -1,6 +1,6 @@
 //! The paper's transfer and ours between all objects.
 
-use hand::HandGrasp;
+use moduli::Grasp;
 use space::{Continuation, Transfer};
 use sph::Direction;
 
@@ -21,7 +21,7 @@ pub fn measure(
     run: &Run,
     settings: &Settings,
     set: &FittedSet,
-    grasps: &[Vec<HandGrasp>],
+    grasps: &[Vec<Grasp>],
 ) -> Result<(Vec<Carried>, ThreadSeconds), ExperimentError> {
     let starts = directions(grasps);
     let key = ledger::key(run, set, &starts, settings)?;
@@ -101,7 +101,7 @@ pub(super) fn drawn(
     run: &Run,
     settings: &Settings,
     set: &FittedSet,
-    grasps: &[Vec<HandGrasp>],
+    grasps: &[Vec<Grasp>],
 ) -> Result<Option<DrawnTransfer>, ExperimentError> {
     let mut with_grasps = set.objects.iter().zip(grasps);
     let first = with_grasps.find_map(|(o, g)| Some((o, g.first()?)));
@@ -120,7 +120,7 @@ pub(super) fn drawn(
     };
     settings
         .transfer
-        .carry_traced(&transfer, &grasp.directions, keep)?;
+        .carry_traced(&transfer, grasp.directions(), keep)?;
     let stations = shapes
         .iter()
         .zip(ends)
@@ -134,7 +134,7 @@ pub(super) fn drawn(
 
 /// Counts by source, and over all.
 pub(super) fn counts(run: &Run, set: &FittedSet, carried: &[Carried]) -> Vec<Count> {
-    let builtin = set.objects.iter().all(|o| o.object.truth.is_some());
+    let builtin = set.objects.iter().all(|o| o.scan.truth.is_some());
     let mut counts: Vec<Count> = set
         .objects
         .iter()
