@@ -115,7 +115,7 @@ where
 }
 
 /// What the results of a run depend on: the program, the surfaces, the grasps to begin with, the
-/// seed, the convention and the plan of the section, whose `Debug` text names all its numbers.
+/// seed, the convention and the settings of the section, whose `Debug` text names all numbers.
 ///
 /// # Errors
 /// The file of the running program cannot be read.
@@ -123,7 +123,7 @@ pub fn key(
     run: &Run,
     set: &FittedSet,
     starts: &[Vec<Vec<Direction>>],
-    plan: &impl std::fmt::Debug,
+    section: &impl std::fmt::Debug,
 ) -> Result<Key, ExperimentError> {
     let mut surfaces = Vec::new();
     for object in &set.objects {
@@ -137,7 +137,7 @@ pub fn key(
     let settings = json!({
         "seed": run.seed,
         "convention": convention_record(&run.convention),
-        "plan": format!("{plan:?}"),
+        "section": format!("{section:?}"),
     });
     Key::new(&[
         ("surfaces", &surfaces),
