@@ -21,8 +21,7 @@ fn bench(criterion: &mut Criterion) {
     });
     let ascent = PaperAscent {
         steps: 10,
-        delta: 1e-5,
-        rate: 0.01,
+        ..PaperAscent::PAPER
     };
     criterion.bench_function("moduli/ten steps of the paper's ascent L=50", |bencher| {
         bencher.iter(|| ascent.climb(&shape, &start, &mut objective, |_| {}))

@@ -1,11 +1,12 @@
-//! What the paper states: its constants and the numbers it reports. Nothing else holds them.
+//! What the paper states: its constants and the numbers it reports. The steps of its ascent and its
+//! transfer are those of `space`.
 //!
 //! F. T. Pokorny, Y. Bekiroglu, D. Kragic, "Grasp Moduli Spaces and Spherical Harmonics",
 //! ICRA 2014.
 
 use std::ops::Range;
 
-use space::PaperAscent;
+use space::{PaperAscent, PaperTransfer};
 
 /// Points of a cloud (Sec. IV-A).
 pub const CLOUD_POINTS: usize = 25_000;
@@ -52,19 +53,19 @@ pub const BEST_GRASPS: usize = 50;
 pub const VERY_BEST_GRASPS: usize = 10;
 
 /// Forward-difference step δ, radians (Sec. IV-D).
-pub const DIFFERENCE_STEP: f64 = 1e-5;
+pub const DIFFERENCE_STEP: f64 = PaperAscent::PAPER.delta;
 /// Step length of the ascent, radians (Sec. IV-D).
-pub const ASCENT_RATE: f64 = 0.01;
+pub const ASCENT_RATE: f64 = PaperAscent::PAPER.rate;
 /// Steps of the ascent on one surface (Sec. IV-D).
-pub const ASCENT_STEPS: usize = 1_000;
+pub const ASCENT_STEPS: usize = PaperAscent::PAPER.steps;
 /// Initial and final quality of the four ascents of Fig. 8.
 pub const ASCENT_EXAMPLES: [(f64, f64); 4] =
     [(0.51, 0.72), (0.54, 0.64), (0.62, 0.70), (0.62, 0.67)];
 
 /// Stations γ(0), γ(0.1), …, γ(1) of a transfer (Sec. IV-E).
-pub const TRANSFER_STATIONS: usize = 11;
+pub const TRANSFER_STATIONS: usize = PaperTransfer::PAPER.intervals + 1;
 /// Steps of the ascent on each of them (Sec. IV-E).
-pub const TRANSFER_STEPS: usize = 100;
+pub const TRANSFER_STEPS: usize = PaperTransfer::PAPER.ascent.steps;
 /// Transfers per source surface (Sec. IV-E).
 pub const TRANSFERS_PER_SOURCE: usize = 110;
 /// All transfers (Sec. IV-E).
@@ -80,8 +81,7 @@ pub const UNSTABLE_BY_SOURCE: [(usize, usize); 5] = [(2, 2), (4, 1), (5, 1), (9,
 pub fn ascent(steps: usize) -> PaperAscent {
     PaperAscent {
         steps,
-        delta: DIFFERENCE_STEP,
-        rate: ASCENT_RATE,
+        ..PaperAscent::PAPER
     }
 }
 

@@ -192,6 +192,15 @@ pub struct PaperTransfer {
 }
 
 impl PaperTransfer {
+    /// The transfer of Sec. IV-E: eleven stations, 100 steps at each.
+    pub const PAPER: Self = Self {
+        intervals: 10,
+        ascent: PaperAscent {
+            steps: 100,
+            ..PaperAscent::PAPER
+        },
+    };
+
     /// Carries one grasp from the source to the target.
     ///
     /// # Errors

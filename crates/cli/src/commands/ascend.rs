@@ -13,13 +13,6 @@ use crate::moved::{Given, Moved, TraceStep, given};
 use crate::movement::Movement;
 use crate::{input, limits};
 
-/// The paper's ascent (Sec. IV-D).
-pub(crate) const PAPER_ASCENT: PaperAscent = PaperAscent {
-    steps: 1000,
-    delta: 1e-5,
-    rate: 0.01,
-};
-
 pub(crate) fn run(options: &AscendOptions, common: &Common) -> Result<(), Failure> {
     let convention = input::convention(&options.moved.convention)?;
     let object = input::object(&options.shape)?;
@@ -82,7 +75,7 @@ fn climb(
             constraints,
             keep,
         )?,
-        AscentScheme::Paper => PAPER_ASCENT.climb(surface, start, &mut objective, keep)?,
+        AscentScheme::Paper => PaperAscent::PAPER.climb(surface, start, &mut objective, keep)?,
     };
     Ok(Moved {
         reason: (ascent.quality <= 0.0)

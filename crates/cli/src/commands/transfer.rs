@@ -11,25 +11,15 @@ use nalgebra::Point3;
 use record::grasps::SourceRecord;
 use shape::{RadialField, Surface, algebra};
 use space::{
-    Constraints, Continuation, Objective, PaperAscent, PaperTransfer, Step, Transfer, TransferEnd,
+    Constraints, Continuation, Objective, PaperTransfer, Step, Transfer, TransferEnd,
     TransferError, Transferred,
 };
 
 use crate::args::{Common, TransferOptions, TransferScheme};
-use crate::commands::ascend::PAPER_ASCENT;
 use crate::failure::Failure;
 use crate::moved::{Given, Moved, TraceStep, given};
 use crate::movement::Movement;
 use crate::{input, limits};
-
-/// The paper's transfer (Sec. IV-E).
-const PAPER: PaperTransfer = PaperTransfer {
-    intervals: 10,
-    ascent: PaperAscent {
-        steps: 100,
-        ..PAPER_ASCENT
-    },
-};
 
 /// How grasps are carried.
 enum Scheme {
@@ -154,7 +144,7 @@ fn carry(
         Scheme::Ours(scheme, constraints) => {
             scheme.carry_traced(transfer, start, constraints, keep)?
         }
-        Scheme::Paper => PAPER.carry_traced(transfer, start, keep)?,
+        Scheme::Paper => PaperTransfer::PAPER.carry_traced(transfer, start, keep)?,
         Scheme::Naive => transfer.naive(start)?,
     };
     Ok(Moved {

@@ -15,7 +15,7 @@ use crate::point::contacts_on;
 /// It can end below its start; that is the paper's own finding, kept for comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PaperAscent {
-    /// Number of steps; 1000 in Sec. IV-D, 100 a station in Sec. IV-E.
+    /// Number of steps; 1000 in Sec. IV-D, 100 per station in Sec. IV-E.
     pub steps: usize,
     /// Forward-difference step δ in radians; 1e-5.
     pub delta: f64,
@@ -24,6 +24,13 @@ pub struct PaperAscent {
 }
 
 impl PaperAscent {
+    /// The ascent of Sec. IV-D: 1000 steps of 0.01 radians, slopes from differences of 1e-5 radians.
+    pub const PAPER: Self = Self {
+        steps: 1000,
+        delta: 1e-5,
+        rate: 0.01,
+    };
+
     /// Climbs from `start`; `trace` sees every state, the start and the end included.
     ///
     /// Costs 1 + 2m qualities a step. A start that is not force-closed has no gradient and stays.

@@ -42,11 +42,7 @@ fn it_beats_a_thousand_fixed_steps_with_a_twentieth_of_the_evaluations() {
         let shape = lumpy(seed);
         let start = closed_start(&shape, seed);
         let mut objective = Objective::new(&paper(), &shape, &Point3::origin());
-        let fixed = PaperAscent {
-            steps: 1000,
-            delta: 1e-5,
-            rate: 0.01,
-        };
+        let fixed = PaperAscent::PAPER;
         let a = MonotoneAscent::default()
             .climb(&shape, &start, &mut objective, |_| {})
             .unwrap();

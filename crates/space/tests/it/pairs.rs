@@ -27,8 +27,7 @@ fn far_apart(from: &RadialField, to: &RadialField, rule: &Convention) -> [(f64, 
         intervals: 3,
         ascent: PaperAscent {
             steps: 5,
-            delta: 1e-5,
-            rate: 0.01,
+            ..PaperAscent::PAPER
         },
     };
     let paper = paper.carry(&transfer, &start).unwrap();

@@ -11,8 +11,7 @@ use crate::common::between;
 
 const ASCENT: PaperAscent = PaperAscent {
     steps: 100,
-    delta: 1e-5,
-    rate: 0.01,
+    ..PaperAscent::PAPER
 };
 
 fn paper() -> Convention {
