@@ -1,9 +1,15 @@
 //! The wrenches of one contact as an ellipsoid, and their support function.
 
+mod balance;
+mod cap;
+mod symmetry;
+mod touching;
+
 use crate::contact::Contact;
 use crate::grasp_model::GraspModel;
+use crate::hull::cap::Touching;
 use crate::hull::plane::{V6, add_scaled, dot, norm, scale};
-use crate::hull::support::Support;
+use crate::hull::support::{Support, Symmetries};
 use nalgebra::Vector3;
 
 /// The wrenches of one contact at unit normal force: the ellipsoid base + Σ a_k axis_k, |a| ≤ 1,
@@ -13,7 +19,19 @@ pub(crate) struct Cone {
     pub(crate) contact: u32,
     pub(crate) base: V6,
     pub(crate) axes: [V6; 3],
+    /// The position from the centre and the inward normal.
+    arm: Vector3<f64>,
+    normal: Vector3<f64>,
+    /// What else decides the ellipsoid: the edge scale, μ, γ and the torque length.
+    limits: [f64; 4],
+    /// How far a computed point may be from the exact one.
+    pub(crate) rounding: f64,
 }
+
+/// Rounding errors of a wrench, relative to |f| (1 + |arm|/length), stay below this: a tangent (4 ulps,
+/// more where the rule's vector is nearly parallel to the normal), a cosine (1), the sum of an edge (3),
+/// the arm (1), the cross product (3) and the quotient (1) each add a few ulps.
+const WRENCH_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 impl Cone {
     pub(crate) fn new(model: &GraspModel<'_>, contact: usize, length: f64) -> Self {
@@ -29,6 +47,8 @@ impl Cone {
             [f.x, f.y, f.z, t.x, t.y, t.z]
         };
         let n = inward_normal.into_inner() * unit;
+        let tangent = friction * model.convention.tangent.condition(inward_normal);
+        let size = unit * ((1.0 + tangent) * (1.0 + arm.norm() / length) + torsion / length);
         let t = model.convention.tangent.tangent(inward_normal).into_inner();
         let b = inward_normal.cross(&t);
         let twist = n * (torsion / length);
@@ -40,6 +60,10 @@ impl Cone {
                 of_force(b * (unit * friction)),
                 [0.0, 0.0, 0.0, twist.x, twist.y, twist.z],
             ],
+            arm,
+            normal: inward_normal.into_inner(),
+            limits: [unit, friction, torsion, length],
+            rounding: WRENCH_ROUNDING * size,
         }
     }
 
@@ -67,6 +91,32 @@ impl Cone {
         dot(&self.base, direction) + square.sqrt()
     }
 
+    /// The farthest point along `direction` as coordinates along the axes; all zero where every point
+    /// is as far.
+    pub(crate) fn place(&self, direction: &V6) -> [f64; 3] {
+        let slopes = self.axes.map(|axis| dot(&axis, direction));
+        let length = (slopes[0] * slopes[0] + slopes[1] * slopes[1] + slopes[2] * slopes[2]).sqrt();
+        if length == 0.0 {
+            [0.0; 3]
+        } else {
+            slopes.map(|s| s / length)
+        }
+    }
+
+    /// The point with these coordinates along the axes.
+    pub(crate) fn at(&self, place: &[f64; 3]) -> V6 {
+        let pairs = self.axes.iter().zip(place);
+        pairs.fold(self.base, |p, (axis, &m)| add_scaled(&p, m, axis))
+    }
+
+    /// An upper bound of |Aᵀ v| over unit vectors v orthogonal to `u`, A the matrix of the axes.
+    fn spread(&self, u: &V6) -> f64 {
+        let [t, b, twist] = self.axes.map(|a| add_scaled(&a, -dot(&a, u), u));
+        let (tt, tb, bb) = (dot(&t, &t), dot(&t, &b), dot(&b, &b));
+        let friction = 0.5 * (tt + bb) + (0.25 * (tt - bb) * (tt - bb) + tb * tb).sqrt();
+        (friction + dot(&twist, &twist)).sqrt()
+    }
+
     /// No point of the ellipsoid is longer.
     pub(crate) fn reach(&self) -> f64 {
         let square: f64 = self.axes.iter().map(|a| dot(a, a)).sum();
@@ -90,7 +140,7 @@ impl Cone {
     }
 }
 
-/// The hull of several round cones.
+/// The hull of several round cones; a point is called by the number of its cone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoundSource<'a>(pub(crate) &'a [Cone]);
 
@@ -104,7 +154,23 @@ impl Support for RoundSource<'_> {
             }
         }
         let cone = &self.0[best.0];
-        (cone.farthest(direction).0, cone.contact)
+        (cone.farthest(direction).0, best.0 as u32)
+    }
+
+    fn is_curved(&self) -> bool {
+        true
+    }
+
+    fn symmetries(&self, out: &mut Symmetries) {
+        symmetry::symmetries(self.0, out);
+    }
+
+    fn touching(&self, normal: &V6, shares: &[(u32, V6, f64)]) -> Option<Touching> {
+        touching::touching(self.0, normal, shares)
+    }
+
+    fn cap(&self, touching: &Touching, level: f64) -> f64 {
+        cap::cap(self.0, touching, level)
     }
 }
 

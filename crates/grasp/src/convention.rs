@@ -116,6 +116,12 @@ impl TangentRule {
         })
     }
 
+    /// How much rounding the projection amplifies: the vector's length over that of its projection.
+    pub(crate) fn condition(&self, normal: &UnitVector3<f64>) -> f64 {
+        let axis = self.axis(normal);
+        axis.norm() / (axis - normal.into_inner() * normal.dot(&axis)).norm()
+    }
+
     /// The unit tangent at a normal.
     pub fn tangent(&self, normal: &UnitVector3<f64>) -> UnitVector3<f64> {
         let axis = self.axis(normal);

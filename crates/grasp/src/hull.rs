@@ -1,5 +1,6 @@
 //! Convex hulls of points in R⁶, and nothing else.
 
+pub(crate) mod cap;
 mod full;
 pub(crate) mod min_norm;
 pub(crate) mod plane;

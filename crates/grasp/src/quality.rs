@@ -1,5 +1,6 @@
 //! Numbers that say how well a grasp resists disturbances.
 
+mod certificate;
 mod epsilon;
 mod facet;
 mod isotropy;
@@ -7,10 +8,10 @@ mod linf;
 mod margin;
 mod min_weight;
 mod robustness;
-mod touching_face;
 mod volume;
 mod workspace;
 
+pub use certificate::{Certificate, CertificateCap, CertificateFacet, epsilon_with_certificate};
 pub use epsilon::{Epsilon, QualityError, epsilon, epsilon_of_wrenches};
 pub use facet::{ActiveFacet, Carrier};
 pub use isotropy::smallest_singular_value;

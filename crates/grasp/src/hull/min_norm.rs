@@ -92,7 +92,8 @@ impl Corral {
         self.points[..self.len].contains(p)
     }
 
-    fn combination(&self) -> V6 {
+    /// The point that the weights make.
+    pub(crate) fn combination(&self) -> V6 {
         let pairs = self.points[..self.len].iter().zip(&self.weights);
         pairs.fold([0.0; 6], |x, (p, &w)| add_scaled(&x, w, p))
     }

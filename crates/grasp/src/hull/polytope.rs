@@ -8,6 +8,7 @@
 //! own vertices) this makes min(offset − residual) a lower bound of the ball inside, however thin
 //! a facet may be.
 
+mod bounds;
 mod moved;
 
 use super::plane::{Plane, V6, add_scaled, norm, scale};
@@ -42,6 +43,8 @@ pub(crate) struct Facet {
     links: [Link; 6],
     /// Set once the plane has been replaced by the best one for this simplex.
     pub(crate) settled: bool,
+    /// Set once a cap of directions is known that settles this facet; its key is the cap's level.
+    pub(crate) covered: bool,
     /// The count of moves at which no point was known to lie above; 0 for never.
     pub(crate) finished: u32,
     /// The count of moves for which the plane holds; an earlier one bounds less and less.
@@ -57,6 +60,8 @@ struct Slot {
 
 /// The most vertices that a polytope may hold (vertex numbers are 16 bits wide).
 pub(crate) const MAX_VERTICES: usize = u16::MAX as usize;
+/// The most facets that a polytope may hold at once: with all scratch about 30 MB.
+const MAX_FACETS: usize = 100_000;
 
 /// The surface and all scratch of its growth; cleared, never shrunk, by `start`.
 #[derive(Clone, Debug, Default)]
@@ -76,6 +81,10 @@ pub(crate) struct Polytope {
     pub(super) hint: usize,
     /// Facets made since `start`.
     pub(crate) created: usize,
+    /// How many vertices may still be taken twice.
+    pub(crate) copies: usize,
+    /// Whether the surface is known to surround the origin: every ray from it meets a facet.
+    pub(crate) surrounds: bool,
     /// The largest residual of any plane since `start`.
     pub(crate) worst_residual: f64,
     /// The rounding error of a height: a few ulps of the longest vertex.
@@ -105,6 +114,8 @@ impl Polytope {
         self.rounding = 0.0;
         self.drift = 0.0;
         self.moves = 1;
+        self.surrounds = false;
+        self.copies = 0;
         points.iter().for_each(|p| self.widen(p));
         // Stamps go on counting, so that old ones mean nothing; long before they run out, anew.
         if self.epoch > u32::MAX / 2 {
@@ -203,9 +214,11 @@ impl Polytope {
     /// the surface unchanged, if no facet would be left to join the vertex to.
     pub(crate) fn insert(&mut self, point: &V6, tag: u32, seed: usize, tolerance: f64) -> bool {
         self.flood(point, seed, tolerance);
-        if self.border.is_empty() || self.vertices.len() > MAX_VERTICES {
+        let facets = self.facets.len() + self.border.len();
+        if self.border.is_empty() || self.vertices.len() > MAX_VERTICES || facets > MAX_FACETS {
             return false;
         }
+        self.surrounds &= self.stays_clear();
         let apex = self.vertices.len() as u16;
         self.vertices.push(*point);
         self.tags.push(tag);
@@ -347,6 +360,7 @@ impl Polytope {
             vertices,
             links,
             settled: false,
+            covered: false,
             finished: 0,
             moved: self.moves,
         };

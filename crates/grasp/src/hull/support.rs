@@ -1,11 +1,63 @@
 //! Support functions: the farthest point of a set along a direction.
 
+use super::cap::Touching;
 use super::plane::{V6, add_scaled, dot, norm};
 
 /// A set known by its farthest point along any direction.
 pub(crate) trait Support {
     /// The farthest point along `direction`, and what the caller calls it.
     fn support(&mut self, direction: &V6) -> (V6, u32);
+
+    /// Whether the set is curved, so that no polytope of its points can be exact.
+    fn is_curved(&self) -> bool {
+        false
+    }
+
+    /// The symmetries of the set, written to `out`; none where none are known.
+    fn symmetries(&self, out: &mut Symmetries) {
+        out.maps.clear();
+    }
+
+    /// The face that a ball around the origin touches near a facet of points of the set, given with
+    /// the convex weights of the facet's point nearest to the origin; None where none is found.
+    fn touching(&self, _normal: &V6, _shares: &[(u32, V6, f64)]) -> Option<Touching> {
+        None
+    }
+
+    /// The largest angle around the direction of a touching face within which the support function
+    /// is proved to be `level` or more; 0 where nothing is proved.
+    fn cap(&self, _touching: &Touching, _level: f64) -> f64 {
+        0.0
+    }
+}
+
+/// An orthogonal matrix of R³ and the permutation of contacts that it makes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SpaceMap {
+    pub(crate) matrix: nalgebra::Matrix3<f64>,
+    pub(crate) image: [u8; 16],
+}
+
+/// Linear isometries of R⁶ that map a set to itself, up to an error.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Symmetries {
+    /// A group, without the identity.
+    pub(crate) maps: Vec<[V6; 6]>,
+    /// The matrices of R³ that they come from, with the permutations that they make.
+    pub(crate) found: Vec<SpaceMap>,
+    /// How far any point of an image may be from the set.
+    pub(crate) error: f64,
+}
+
+/// How large a set is and how exactly it is known.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extent {
+    /// A direction in which points of the set lie.
+    pub(crate) toward: V6,
+    /// The length of the longest point, or a little more.
+    pub(crate) reach: f64,
+    /// How far a computed height along a unit vector may be from the exact one.
+    pub(crate) rounding: f64,
 }
 
 /// The farthest of a list of points, the first on ties.

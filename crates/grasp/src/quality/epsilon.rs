@@ -12,14 +12,19 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Epsilon {
     /// The radius of the largest origin-centred ball inside the hull of the wrenches, 0 when the
-    /// grasp is not force-closed. The lower end of the interval.
+    /// grasp is not force-closed: the best estimate in the interval where the search converged, its
+    /// lower end where it did not.
     pub quality: f64,
-    /// No larger than the true radius.
+    /// Proved to be no larger than the true radius.
     pub lower: f64,
-    /// No smaller than the true radius.
+    /// Proved to be no smaller than the true radius.
     pub upper: f64,
-    /// Whether the origin lies strictly inside: the grasp resists any small wrench.
+    /// Whether `lower` is positive: the origin lies strictly inside and the grasp resists any small
+    /// wrench.
     pub closed: bool,
+    /// Whether the interval is as narrow as the convention asks for. If not, the search met a limit of
+    /// its size, and `quality` is `lower`.
+    pub converged: bool,
     /// The unit wrench direction in which the hull reaches only `upper` far; where the grasp is not
     /// closed, one along which it can push not at all.
     pub direction: Wrench,
@@ -36,26 +41,13 @@ impl Epsilon {
     }
 
     pub(crate) fn from_ball(ball: &Ball) -> Self {
-        match *ball {
-            Ball::Open { direction } => Epsilon {
-                quality: 0.0,
-                lower: 0.0,
-                upper: 0.0,
-                closed: false,
-                direction: direction.into(),
-            },
-            Ball::Closed {
-                lower,
-                upper,
-                direction,
-                ..
-            } => Epsilon {
-                quality: lower,
-                lower,
-                upper,
-                closed: true,
-                direction: direction.into(),
-            },
+        Epsilon {
+            quality: if ball.closed { ball.quality } else { 0.0 },
+            lower: ball.lower,
+            upper: ball.upper,
+            closed: ball.closed,
+            converged: ball.converged,
+            direction: ball.direction.into(),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The facets of the hull that decide a quality.
 
+use crate::hull::cap::MOST_PARTS;
 use crate::hull::plane::V6;
 use crate::wrench::Wrench;
 
@@ -21,11 +22,15 @@ pub struct ActiveFacet {
     pub offset: f64,
     /// The outward unit normal: the wrench direction in which the grasp is that weak.
     pub normal: Wrench,
-    carriers: [Carrier; 7],
+    carriers: [Carrier; ActiveFacet::MOST],
     count: usize,
 }
 
 impl ActiveFacet {
+    /// The most wrenches that carry a facet: six vertices, a corral of seven, or every contact of a
+    /// touching face.
+    pub(crate) const MOST: usize = MOST_PARTS;
+
     /// The wrenches that carry it; Σ weight·wrench = offset·normal.
     pub fn carriers(&self) -> &[Carrier] {
         &self.carriers[..self.count]
@@ -43,7 +48,7 @@ impl ActiveFacet {
                 contact: 0,
                 wrench: Wrench::zeros(),
                 weight: 0.0,
-            }; 7],
+            }; ActiveFacet::MOST],
             count: 0,
         };
         for (slot, (contact, wrench, weight)) in facet.carriers.iter_mut().zip(carriers) {

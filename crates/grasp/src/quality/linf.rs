@@ -5,7 +5,7 @@ use super::workspace::{Workspace, requested_gap};
 use crate::cone::Cone;
 use crate::grasp_model::GraspModel;
 use crate::hull::plane::{V6, add_scaled, dot};
-use crate::hull::support::Support;
+use crate::hull::support::{Extent, Support};
 
 /// The radius of the largest origin-centred ball in the Minkowski sum over contacts of
 /// Conv({0} ∪ {w_ij}_j) (Ferrari and Canny's L^∞), for polygonal and round cones alike.
@@ -23,9 +23,14 @@ pub fn epsilon_linf(
         .cones
         .iter()
         .fold([0.0; 6], |s, c| add_scaled(&s, 1.0, &c.base));
+    let extent = Extent {
+        toward,
+        reach,
+        rounding: workspace.cones.len() as f64 * workspace.rounding(),
+    };
     let ball = if workspace.round {
         let mut source = RoundSum(&workspace.cones);
-        workspace.search.ball(&mut source, &toward, reach, gap)
+        workspace.search.ball(&mut source, &extent, gap)
     } else {
         workspace.flat.clear();
         workspace.flat_tags.clear();
@@ -37,7 +42,7 @@ pub fn epsilon_linf(
             points: &workspace.flat,
             owners: &workspace.flat_tags,
         };
-        workspace.search.ball(&mut source, &toward, reach, gap)
+        workspace.search.ball(&mut source, &extent, gap)
     };
     Ok(Epsilon::from_ball(&ball))
 }

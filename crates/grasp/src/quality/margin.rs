@@ -2,7 +2,6 @@
 
 use super::epsilon::QualityError;
 use super::facet::ActiveFacet;
-use super::touching_face::touching_face;
 use super::workspace::{Workspace, requested_gap};
 use crate::grasp_model::GraspModel;
 use crate::hull::min_norm::{Corral, Effort, Nearest};
@@ -15,7 +14,7 @@ use nalgebra::{Matrix6, Vector6};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margin {
     /// The epsilon quality of a closed grasp; minus the distance of the origin from the hull of an
-    /// open one. The lower end of the interval.
+    /// open one.
     pub value: f64,
     /// No larger than the true margin.
     pub lower: f64,
@@ -35,32 +34,21 @@ pub struct Margin {
 /// regular, whatever the width of the interval.
 pub fn margin(model: &GraspModel<'_>, workspace: &mut Workspace) -> Result<Margin, QualityError> {
     workspace.load_next(model)?;
-    match workspace.ball(requested_gap(model.convention.edges)) {
-        Ball::Open { direction } => Ok(outside(workspace, &direction)),
-        Ball::Closed {
-            lower,
-            upper,
-            facet,
-            ..
-        } => {
-            let mut facet = closest(workspace, facet);
-            let mut upper = upper;
-            if workspace.round
-                && let Some(touching) = touching_face(&workspace.cones, &facet)
-                && (lower..=upper + 1e-12 * workspace.reach()).contains(&touching.offset)
-            {
-                facet = touching;
-                upper = upper.min(touching.offset);
-            }
-            Ok(Margin {
-                value: lower,
-                lower,
-                upper,
-                closed: true,
-                facet,
-            })
-        }
+    let ball = workspace.ball(requested_gap(model.convention.edges));
+    if !ball.closed {
+        return Ok(outside(workspace, &ball));
     }
+    let facet = match workspace.touching(&ball) {
+        Some(touching) => touching,
+        None => closest(workspace, ball.facet),
+    };
+    Ok(Margin {
+        value: ball.quality,
+        lower: ball.lower,
+        upper: ball.upper,
+        closed: true,
+        facet,
+    })
 }
 
 /// The facets within `band` of the nearest one, that one first, then by their offsets; nothing for an
@@ -154,7 +142,7 @@ fn same_facet(workspace: &Workspace, a: usize, b: usize) -> bool {
 }
 
 /// The nearest face of a hull that does not hold the origin inside.
-fn outside(workspace: &mut Workspace, direction: &V6) -> Margin {
+fn outside(workspace: &mut Workspace, ball: &Ball) -> Margin {
     let tolerance = 1e-12 * workspace.reach();
     let (point, floor) = match workspace.nearest() {
         Nearest::Outside { point, floor } => (point, floor.max(0.0)),
@@ -164,14 +152,18 @@ fn outside(workspace: &mut Workspace, direction: &V6) -> Margin {
     let normal = if distance > tolerance {
         scale(&point, -1.0 / distance)
     } else {
-        *direction
+        ball.direction
     };
     let corral = &workspace.search.corral;
     let carriers = corral_carriers(corral, |tag| workspace.owner(tag));
     Margin {
         value: -distance,
         lower: -distance,
-        upper: -floor.min(distance),
+        upper: if ball.upper > 0.0 {
+            ball.upper
+        } else {
+            -floor.min(distance)
+        },
         closed: false,
         facet: ActiveFacet::new(-distance, &normal, carriers),
     }

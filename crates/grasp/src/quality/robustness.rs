@@ -4,7 +4,6 @@ use super::epsilon::{QualityError, epsilon};
 use super::workspace::Workspace;
 use crate::convention::{Convention, TorqueLength};
 use crate::grasp_model::GraspModel;
-use crate::hull::search::Ball;
 use crate::wrench::WrenchError;
 
 /// The friction coefficient at which a grasp starts to be force-closed, to a relative 1e-9.
@@ -27,7 +26,7 @@ pub fn least_friction(
             contact_models: &[],
             ..*model
         })?;
-        Ok(matches!(workspace.ball(f64::INFINITY), Ball::Closed { .. }))
+        Ok(workspace.ball(f64::INFINITY).closed)
     };
     if !closed(largest)? {
         return Ok(None);

@@ -1,5 +1,6 @@
 //! Caller-owned scratch: a grasp laid out as cones and points, and the search over them.
 
+use super::facet::ActiveFacet;
 use crate::cone::{Cone, RoundSource, toward};
 use crate::convention::Edges;
 use crate::friction::angle;
@@ -7,7 +8,7 @@ use crate::grasp_model::GraspModel;
 use crate::hull::min_norm::{Effort, Nearest};
 use crate::hull::plane::V6;
 use crate::hull::search::{Ball, RELATIVE_TOLERANCE, Search};
-use crate::hull::support::PointSet;
+use crate::hull::support::{Extent, PointSet, Support};
 use crate::wrench::{Wrench, WrenchError};
 
 /// Scratch of quality computations: make one for each thread and pass it to every call.
@@ -23,6 +24,8 @@ pub struct Workspace {
     order: Vec<u32>,
     circle: Vec<(f64, f64)>,
     pub(crate) round: bool,
+    /// How far any computed wrench may be from the exact one.
+    wrench_rounding: f64,
     warm_start: bool,
     /// Whether the polytope of the last search belongs to the points as they were then.
     fits: bool,
@@ -118,12 +121,15 @@ impl Workspace {
         for &contact in &self.order {
             self.cones.push(Cone::new(model, contact as usize, length));
         }
+        let roundings = self.cones.iter().map(|c| c.rounding);
+        self.wrench_rounding = roundings.fold(0.0, f64::max);
     }
 
     /// Lays out a plain list of wrenches, each its own owner.
     pub(crate) fn load_wrenches(&mut self, wrenches: &[Wrench]) {
         self.fits = false;
         self.round = false;
+        self.wrench_rounding = 0.0;
         self.points.clear();
         self.owners.clear();
         for (index, wrench) in wrenches.iter().enumerate() {
@@ -152,8 +158,9 @@ impl Workspace {
 
     /// The largest ball about the origin in what was laid out.
     pub(crate) fn ball(&mut self, gap: f64) -> Ball {
+        let rounding = self.rounding();
         if self.fits
-            && let Some(ball) = self.search.ball_again(&self.points)
+            && let Some(ball) = self.search.ball_again(&self.points, rounding)
         {
             return ball;
         }
@@ -162,21 +169,31 @@ impl Workspace {
 
     fn ball_anew(&mut self, gap: f64) -> Ball {
         let ball = self.search_ball(gap);
-        self.fits = self.warm_start && !self.round && matches!(ball, Ball::Closed { .. });
+        self.fits = self.warm_start && !self.round && ball.closed;
         ball
     }
 
     fn search_ball(&mut self, gap: f64) -> Ball {
+        let (reach, rounding) = (self.reach(), self.rounding());
+        let extent = |toward: V6| Extent {
+            toward,
+            reach,
+            rounding,
+        };
         if self.round {
-            let reach = self.reach();
             let mut source = RoundSource(&self.cones);
-            self.search
-                .ball(&mut source, &toward(&self.cones), reach, gap)
+            let extent = extent(toward(&self.cones));
+            self.search.ball(&mut source, &extent, gap)
         } else {
-            let mut source = &self.points;
-            let (sum, reach) = (*self.points.sum(), self.points.reach());
-            self.search.ball(&mut source, &sum, reach, gap)
+            let extent = extent(*self.points.sum());
+            self.search.ball(&mut &self.points, &extent, gap)
         }
+    }
+
+    /// How far a computed height along a computed unit vector may be from the exact one: the error of
+    /// the wrench, of six products and five sums, and of the vector's length.
+    pub(crate) fn rounding(&self) -> f64 {
+        self.wrench_rounding + HEIGHT_ROUNDING * self.reach()
     }
 
     /// The point nearest to the origin of what was laid out.
@@ -197,16 +214,42 @@ impl Workspace {
         }
     }
 
+    /// The face of round cones that the ball of the last search touches, if one was found.
+    pub(crate) fn touching(&self, ball: &Ball) -> Option<ActiveFacet> {
+        if !self.round {
+            return None;
+        }
+        let polytope = &self.search.polytope;
+        let normal = polytope.facets[ball.facet].plane.normal;
+        let shares = polytope.shares(ball.facet);
+        let here = shares.and_then(|s| RoundSource(&self.cones).touching(&normal, &s));
+        let caps = self.search.caps.iter().map(|cap| cap.touching);
+        let nearest = caps
+            .chain(here)
+            .filter(|t| (ball.lower..=ball.upper).contains(&t.offset))
+            .min_by(|a, b| a.offset.total_cmp(&b.offset))?;
+        let carriers = nearest.parts().iter().map(|part| {
+            let cone = &self.cones[part.cone];
+            (cone.contact as usize, cone.at(&part.place), part.weight)
+        });
+        Some(ActiveFacet::new(
+            nearest.offset,
+            &nearest.direction,
+            carriers,
+        ))
+    }
+
     /// Goes on until every facet up to `level` is final; returns the nearest.
     pub(crate) fn finish(&mut self, level: f64, gap: f64) -> usize {
         let tolerance = self.reach() * RELATIVE_TOLERANCE;
         let search = &mut self.search;
         let done = if self.round {
+            search.polytope.uncover();
             search.finish(&mut RoundSource(&self.cones), level, gap, tolerance)
         } else {
             search.finish(&mut &self.points, level, gap, tolerance)
         };
-        if !done && matches!(self.ball_anew(gap), Ball::Closed { .. }) {
+        if !done && self.ball_anew(gap).closed {
             return self.finish(level, gap);
         }
         self.search.polytope.nearest()
@@ -224,12 +267,15 @@ impl Workspace {
     /// The contact that a vertex belongs to.
     pub(crate) fn owner(&self, tag: u32) -> usize {
         if self.round {
-            tag as usize
+            self.cones[tag as usize].contact as usize
         } else {
             self.owners[tag as usize] as usize
         }
     }
 }
+
+/// Rounding of a height, relative to the longest wrench.
+const HEIGHT_ROUNDING: f64 = 12.0 * f64::EPSILON;
 
 /// The width of interval that a convention asks for.
 pub(crate) fn requested_gap(edges: Edges) -> f64 {

@@ -3,8 +3,11 @@
 mod allocation;
 mod common;
 mod conventions;
+mod exact;
+mod families;
 mod following;
 mod forces;
 mod gradient;
 mod properties;
 mod reference;
+mod truth;

@@ -21,7 +21,7 @@ const MOST_DRIFT: f64 = 4.0;
 impl Search {
     /// [`Search::ball`] of exact points, where the polytope of the last search came from the same
     /// points before they moved; None when only a new search can tell.
-    pub(crate) fn ball_again(&mut self, points: &PointSet) -> Option<Ball> {
+    pub(crate) fn ball_again(&mut self, points: &PointSet, rounding: f64) -> Option<Ball> {
         let reach = points.reach();
         let tolerance = RELATIVE_TOLERANCE * reach;
         let polytope = &mut self.polytope;
@@ -46,12 +46,20 @@ impl Search {
             if height - plane.offset <= tolerance {
                 let lower = plane.offset - self.polytope.worst_residual;
                 // An interval that rounding has widened may be narrower after a new search.
-                return (upper - lower <= tolerance).then_some(Ball::Closed {
-                    lower: lower.min(upper),
-                    upper,
+                if upper - lower > tolerance || !self.polytope.surrounds {
+                    return None;
+                }
+                let proved = (lower.min(upper) - rounding).max(0.0);
+                let ball = Ball {
+                    lower: proved,
+                    upper: upper + rounding,
+                    quality: lower.min(upper),
                     direction,
                     facet,
-                });
+                    closed: proved > 0.0,
+                    converged: true,
+                };
+                return ball.closed.then_some(ball);
             }
             if !self.expand_moved(facet, &point, tag, tolerance) {
                 return None;
