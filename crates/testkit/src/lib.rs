@@ -9,7 +9,7 @@
 //!   MODULI_DATA=FOLDER cargo test --workspace -- --include-ignored
 //!   ```
 //!
-//! - [`reference`] holds numbers of independent programs, which tests compare with.
+//! - [`mod@reference`] holds numbers of independent programs, which tests compare with.
 //! - [`CountingAllocator`] counts the allocations of each thread.
 //!
 //! ```
