@@ -28,29 +28,71 @@ pub(crate) struct Cone {
     pub(crate) rounding: f64,
 }
 
+/// What decides an ellipsoid beside its place: the length of the normal force, μ and γ.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    pub(crate) unit: f64,
+    pub(crate) friction: f64,
+    pub(crate) torsion: f64,
+}
+
 /// Rounding errors of a wrench, relative to |f| (1 + |arm|/length), stay below this: a tangent (4 ulps,
 /// more where the rule's vector is nearly parallel to the normal), a cosine (1), the sum of an edge (3),
 /// the arm (1), the cross product (3) and the quotient (1) each add a few ulps.
 const WRENCH_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 impl Cone {
-    pub(crate) fn new(model: &GraspModel<'_>, contact: usize, length: f64) -> Self {
+    /// The ellipsoids of one contact, one per point of its contact model.
+    pub(crate) fn all(
+        model: &GraspModel<'_>,
+        contact: usize,
+        length: f64,
+    ) -> impl Iterator<Item = Self> {
+        let points = model.contact_model(contact).points();
+        (0..points).map(move |point| Self::new(model, contact, point, length))
+    }
+
+    fn new(model: &GraspModel<'_>, contact: usize, point: usize, length: f64) -> Self {
+        let contact_model = model.contact_model(contact);
+        let (friction, torsion) = contact_model.limits();
+        let limits = Limits {
+            unit: model.edge_scale(contact),
+            friction,
+            torsion,
+        };
+        Self::with_limits(model, contact, contact_model.place(point), limits, length)
+    }
+
+    /// The ellipsoid of a point beside a contact, with limits of its own.
+    pub(crate) fn with_limits(
+        model: &GraspModel<'_>,
+        contact: usize,
+        place: [f64; 2],
+        limits: Limits,
+        length: f64,
+    ) -> Self {
         let Contact {
             position,
             inward_normal,
         } = &model.contacts[contact];
-        let (friction, torsion) = model.contact_model(contact).limits();
-        let unit = model.edge_scale(contact);
-        let arm = position - model.centre;
+        let Limits {
+            unit,
+            friction,
+            torsion,
+        } = limits;
+        let mut arm = position - model.centre;
+        let n = inward_normal.into_inner() * unit;
+        let t = model.convention.tangent.tangent(inward_normal).into_inner();
+        let b = inward_normal.cross(&t);
+        if place != [0.0, 0.0] {
+            arm += t * place[0] + b * place[1];
+        }
         let of_force = |f: Vector3<f64>| {
             let t = arm.cross(&f) / length;
             [f.x, f.y, f.z, t.x, t.y, t.z]
         };
-        let n = inward_normal.into_inner() * unit;
         let tangent = friction * model.convention.tangent.condition(inward_normal);
         let size = unit * ((1.0 + tangent) * (1.0 + arm.norm() / length) + torsion / length);
-        let t = model.convention.tangent.tangent(inward_normal).into_inner();
-        let b = inward_normal.cross(&t);
         let twist = n * (torsion / length);
         Cone {
             contact: contact as u32,

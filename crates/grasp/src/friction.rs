@@ -28,7 +28,7 @@ pub fn cone_edges_from(
     friction: f64,
     count: usize,
     norm: EdgeNorm,
-) -> impl Iterator<Item = Vector3<f64>> + use<> {
+) -> impl Iterator<Item = Vector3<f64>> + Clone + use<> {
     let scale = match norm {
         EdgeNorm::UnitNormalComponent => 1.0,
         EdgeNorm::UnitLength => 1.0 / friction.hypot(1.0),

@@ -1,10 +1,11 @@
 //! The gradient of a facet's offset by contact positions, normals and the centre.
 
+use crate::contact_model::ContactModel;
 use crate::convention::TorqueLength;
 use crate::grasp_model::GraspModel;
 use crate::quality::{ActiveFacet, Carrier};
 use crate::wrench::WrenchError;
-use nalgebra::Vector3;
+use nalgebra::{UnitVector3, Vector3};
 
 /// How the edges of a cone turn when its normal does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,9 +78,11 @@ fn by_carrier(
 ) -> ByCarrier {
     let contact = &model.contacts[carrier.contact];
     let n = contact.inward_normal.into_inner();
-    let arm = contact.position - model.centre;
+    let mut arm = contact.position - model.centre;
     let (a, b) = split(&facet.normal);
     let (f, torque) = split(&carrier.wrench);
+    let place = place_in_patch(model, carrier, &(torque * length - arm.cross(&f)));
+    arm += place;
     let g = a + b.cross(&arm) / length;
     let unit = f.dot(&n);
     let slip = f - n * unit;
@@ -87,19 +90,48 @@ fn by_carrier(
     let torsion = (torque - arm.cross(&f) / length).dot(&n);
     let mut normal = g * unit - slip * g.dot(&n) + b * torsion;
     if frame == FrameRule::Tangent {
-        let rule = &model.convention.tangent;
-        let t = rule.tangent(&contact.inward_normal).into_inner();
-        let side = n.cross(&t);
-        // t comes from the vector e = n (e·n) + t (e·t); turning n by dn spins t by −(e·n)/(e·t) side·dn.
-        let axis = rule.axis(&contact.inward_normal);
-        let spin = -axis.dot(&n) / axis.dot(&t);
-        normal += side * (spin * g.dot(&n.cross(&slip)));
+        let spin = g.dot(&n.cross(&slip));
+        normal += spin_of_tangent(model, &contact.inward_normal, spin);
+    }
+    if place != Vector3::zeros() {
+        // The corners of a patch turn with its normal.
+        let lever = place.cross(&f.cross(&b)) / length;
+        normal += lever.cross(&n);
+        if frame == FrameRule::Tangent {
+            normal += spin_of_tangent(model, &contact.inward_normal, lever.dot(&n));
+        }
     }
     normal -= n * n.dot(&normal);
     ByCarrier {
         position: f.cross(&b) / length,
         normal,
     }
+}
+
+/// What `by_spin`, the derivative by a rotation about the normal, adds to the derivative by the normal.
+///
+/// t comes from the vector e = n (e·n) + t (e·t); turning n by dn spins t by −(e·n)/(e·t) side·dn.
+fn spin_of_tangent(
+    model: &GraspModel<'_>,
+    normal: &UnitVector3<f64>,
+    by_spin: f64,
+) -> Vector3<f64> {
+    let rule = &model.convention.tangent;
+    let t = rule.tangent(normal).into_inner();
+    let axis = rule.axis(normal);
+    let spin = -axis.dot(normal) / axis.dot(&t);
+    normal.cross(&t) * (spin * by_spin)
+}
+
+/// Where the corner of a patch lies from its contact, from the torque d × f that the arm of the contact
+/// does not explain: d is orthogonal to the normal, so (d × f) × n = −d (f·n). Zero for other models.
+fn place_in_patch(model: &GraspModel<'_>, carrier: &Carrier, rest: &Vector3<f64>) -> Vector3<f64> {
+    let ContactModel::Patch { .. } = model.contact_model(carrier.contact) else {
+        return Vector3::zeros();
+    };
+    let n = &model.contacts[carrier.contact].inward_normal;
+    let force = n.x * carrier.wrench[0] + n.y * carrier.wrench[1] + n.z * carrier.wrench[2];
+    -rest.cross(n) / force
 }
 
 /// The torque length is the arm of the farthest contact: a longer one shrinks all torques.

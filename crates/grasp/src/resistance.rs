@@ -41,7 +41,9 @@ const ROUNDS: usize = 60;
 pub fn resist(model: &GraspModel<'_>, external: &Wrench) -> Result<Resistance, WrenchError> {
     let length = model.validate()?;
     let contacts = model.contacts.len();
-    let cones: Vec<Cone> = (0..contacts).map(|i| Cone::new(model, i, length)).collect();
+    let cones: Vec<Cone> = (0..contacts)
+        .flat_map(|i| Cone::all(model, i, length))
+        .collect();
     let scales: Vec<f64> = (0..contacts).map(|i| model.edge_scale(i)).collect();
     let (count, mut rounds) = match model.convention.edges {
         Edges::Polygon(count) => (count, 1),
@@ -91,7 +93,8 @@ fn corners(cones: &[Cone], count: usize) -> Vec<(usize, V6)> {
         })
         .collect();
     let mut columns = Vec::new();
-    for (i, cone) in cones.iter().enumerate() {
+    for cone in cones {
+        let i = cone.contact as usize;
         columns.extend(cone.corners(&circle).map(|w| (i, w)));
     }
     columns
@@ -137,7 +140,8 @@ fn price(
     let y: V6 = std::array::from_fn(|k| multipliers[k]);
     let size = dot(&y, &y).sqrt().max(f64::MIN_POSITIVE);
     let mut worst: f64 = 0.0;
-    for (i, cone) in cones.iter().enumerate() {
+    for cone in cones {
+        let i = cone.contact as usize;
         let (point, height) = cone.farthest(&y);
         // A column of contact i is priced right when y·w ≤ −scale·z_i with z_i ≤ 0 its multiplier.
         let allowed = -scales[i] * multipliers[6 + i];

@@ -35,6 +35,26 @@ pub enum WrenchError {
     /// A round cone has no edges to list.
     #[error("a round friction cone has no finite list of wrenches")]
     RoundCone,
+    /// Another number of uncertainties than of contacts.
+    #[error("{contacts} contacts but {given} uncertainties")]
+    Uncertainties {
+        /// The contacts given.
+        contacts: usize,
+        /// The uncertainties given.
+        given: usize,
+    },
+    /// An uncertainty that is negative, not finite, or an angle beyond π.
+    #[error(
+        "contact {index}: uncertain by {position} in position and {normal} rad in normal; expected numbers from 0, the angle up to pi"
+    )]
+    Uncertainty {
+        /// The contact, from 0.
+        index: usize,
+        /// The distance given.
+        position: f64,
+        /// The angle given.
+        normal: f64,
+    },
     /// Another number of tangents than of contacts.
     #[error("{contacts} contacts but {tangents} tangents")]
     Tangents {

@@ -9,7 +9,7 @@ use crate::wrench::{Wrench, WrenchError, wrench};
 
 /// The wrenches of all edges of all contacts, contact by contact, edge by edge.
 ///
-/// m·k wrenches for m point contacts and k edges. A contact without friction has one edge; a soft
+/// m·k wrenches for m point contacts and k edges; a patch has those of its four points in turn. A contact without friction has one edge; a soft
 /// contact has two more wrenches, edges + 1 and + 2 of its contact, which are its normal force with
 /// the largest torsion of either sign.
 ///
@@ -58,6 +58,21 @@ fn list(
             model.convention.edge_norm,
         );
         let of_force = |f: &Vector3<f64>| wrench(f, &contact.position, model.centre, length);
+        let contact_model = model.contact_model(index);
+        if contact_model.points() > 1 {
+            let t = tangent_of(index).into_inner();
+            let b = contact.inward_normal.cross(&t);
+            for point in 0..contact_model.points() {
+                let [along, across] = contact_model.place(point);
+                let position = contact.position + t * along + b * across;
+                out.extend(
+                    edges
+                        .clone()
+                        .map(|f| wrench(&f, &position, model.centre, length)),
+                );
+            }
+            continue;
+        }
         out.extend(edges.map(|f| of_force(&f)));
         if torsion > 0.0 {
             let n = contact.inward_normal.into_inner() * model.edge_scale(index);

@@ -182,6 +182,6 @@ pub fn metrics(
             None
         },
         smallest_singular_value: grasp::smallest_singular_value(&model)?,
-        least_friction: grasp::least_friction(&model, MOST_FRICTION, &mut workspace)?,
+        least_friction: grasp::friction_needed(&model, MOST_FRICTION, &mut workspace)?.closure,
     })
 }

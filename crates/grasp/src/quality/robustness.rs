@@ -1,50 +1,10 @@
-//! How much friction a grasp needs, and how far it may move, to stay closed.
+//! How far a grasp may move and stay closed.
 
 use super::epsilon::{QualityError, epsilon};
 use super::workspace::Workspace;
-use crate::convention::{Convention, TorqueLength};
+use crate::convention::TorqueLength;
 use crate::grasp_model::GraspModel;
 use crate::wrench::WrenchError;
-
-/// The friction coefficient at which a grasp starts to be force-closed, to a relative 1e-9.
-///
-/// Found by bisection on point contacts with one common μ (the contact models are ignored);
-/// closure is monotone in μ. None if the grasp is not closed even at `largest`.
-pub fn least_friction(
-    model: &GraspModel<'_>,
-    largest: f64,
-    workspace: &mut Workspace,
-) -> Result<Option<f64>, QualityError> {
-    let mut convention = Convention {
-        friction: largest,
-        ..model.convention.clone()
-    };
-    let mut closed = |friction: f64| -> Result<bool, WrenchError> {
-        convention.friction = friction;
-        workspace.load(&GraspModel {
-            convention: &convention,
-            contact_models: &[],
-            ..*model
-        })?;
-        Ok(workspace.ball(f64::INFINITY).closed)
-    };
-    if !closed(largest)? {
-        return Ok(None);
-    }
-    let (mut low, mut high) = (0.0, largest);
-    while high - low > 1e-9 * high {
-        let middle = 0.5 * (low + high);
-        if middle <= f64::MIN_POSITIVE {
-            break;
-        }
-        if closed(middle)? {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    Ok(Some(high))
-}
 
 /// The constant K of |Q(g) − Q(g′)| ≤ K·d(g, g′) for grasps about one centre.
 ///

@@ -116,10 +116,31 @@ impl Workspace {
         Ok(())
     }
 
+    /// Empties the layout for cones that the caller adds one by one.
+    pub(crate) fn start_cones(&mut self, model: &GraspModel<'_>) -> Result<(), WrenchError> {
+        model.validate()?;
+        self.fits = false;
+        self.round = true;
+        self.cones.clear();
+        self.wrench_rounding = 0.0;
+        Ok(())
+    }
+
+    pub(crate) fn add_cone(&mut self, cone: Cone) {
+        self.wrench_rounding = self.wrench_rounding.max(cone.rounding);
+        self.cones.push(cone);
+    }
+
+    /// The largest ball in the hull of the cones that were added.
+    pub(crate) fn round_ball(&mut self, gap: f64) -> Ball {
+        self.ball_anew(gap)
+    }
+
     fn lay_out_cones(&mut self, model: &GraspModel<'_>, length: f64) {
         self.cones.clear();
         for &contact in &self.order {
-            self.cones.push(Cone::new(model, contact as usize, length));
+            self.cones
+                .extend(Cone::all(model, contact as usize, length));
         }
         let roundings = self.cones.iter().map(|c| c.rounding);
         self.wrench_rounding = roundings.fold(0.0, f64::max);
@@ -194,6 +215,19 @@ impl Workspace {
     /// the wrench, of six products and five sums, and of the vector's length.
     pub(crate) fn rounding(&self) -> f64 {
         self.wrench_rounding + HEIGHT_ROUNDING * self.reach()
+    }
+
+    /// Whether a hyperplane keeps the origin from what was laid out, by more than `tolerance`.
+    pub(crate) fn separate(&mut self, tolerance: f64) -> Nearest {
+        let corral = &mut self.search.corral;
+        if self.round {
+            let start = toward(&self.cones);
+            let mut source = RoundSource(&self.cones);
+            corral.nearest(&mut source, &start, Effort::Separate, tolerance)
+        } else {
+            let start = *self.points.sum();
+            corral.nearest(&mut &self.points, &start, Effort::Separate, tolerance)
+        }
     }
 
     /// The point nearest to the origin of what was laid out.

@@ -3,7 +3,7 @@
 use crate::common::{around, generator, in_ball, unit};
 use grasp::{
     Contact, ContactModel, Edges, GraspModel, Resistance, Workspace, Wrench, closed_radius,
-    epsilon, least_friction, min_weight, resist, smallest_singular_value, wrench, wrenches,
+    epsilon, friction_needed, min_weight, resist, smallest_singular_value, wrench, wrenches,
 };
 use nalgebra::{Point3, Unit, Vector3};
 
@@ -129,7 +129,7 @@ fn closed_grasps_resist_every_wrench_within_their_cones() {
 }
 
 #[test]
-fn least_friction_splits_open_from_closed() {
+fn friction_needed_splits_open_from_closed() {
     let mut rng = generator(21);
     let mut workspace = Workspace::new();
     let mut found_some = 0;
@@ -142,7 +142,8 @@ fn least_friction_splits_open_from_closed() {
             convention: &convention,
             contact_models: &[],
         };
-        let Some(least) = least_friction(&model, 3.0, &mut workspace).unwrap() else {
+        let needed = friction_needed(&model, 3.0, &mut workspace).unwrap();
+        let Some(least) = needed.closure else {
             continue;
         };
         found_some += 1;

@@ -127,6 +127,10 @@ fn closed_polygons_of_every_kind() {
                 friction: 0.9,
                 torsion: 0.2,
             };
+            all[1] = ContactModel::Patch {
+                friction: 0.7,
+                radius: 0.15,
+            };
             all
         } else {
             Vec::new()

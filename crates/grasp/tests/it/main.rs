@@ -10,4 +10,5 @@ mod forces;
 mod gradient;
 mod properties;
 mod reference;
+mod robust;
 mod truth;

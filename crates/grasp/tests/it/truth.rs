@@ -72,6 +72,9 @@ fn check_lower(certificate: &Certificate) -> Result<(), String> {
             let key = [five[0], five[1], five[2], five[3], five[4]];
             *ridges.entry(key).or_default() += 1;
         }
+        if dot(&n, &ray).0 <= 0.0 {
+            continue;
+        }
         let rows = std::array::from_fn(|i| facet.vertices.map(|v| vertices[v][i]));
         if let Some(shares) = solve(rows, ray) {
             crossings += usize::from(shares.iter().all(|s| s.0 > 0.0));
