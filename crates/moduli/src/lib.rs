@@ -38,6 +38,7 @@ pub mod grasps_file;
 mod hands;
 mod library;
 mod measure;
+mod metrics;
 mod object;
 mod plan;
 pub mod records;
@@ -48,12 +49,16 @@ pub use crate::frame::CloudFrame;
 pub use crate::grasp::{Grasp, Grasps, HandPlacement, Source, ranked};
 pub use crate::hands::HandSearch;
 pub use crate::library::{Library, Neighbour, TransferOptions};
-pub use crate::measure::{Measure, Metrics, metrics};
+pub use crate::measure::Measure;
+pub use crate::metrics::Metrics;
 pub use crate::object::{FitReport, Object};
 pub use crate::plan::{Plan, Planned, Progress, Stage, TransferCounts};
 pub use crate::synthesis::Poses;
 
-pub use ::grasp::{CentreRule, Contact, Convention, EdgeNorm, Edges, TangentRule, TorqueLength};
+pub use ::grasp::{
+    CentreRule, Contact, Convention, EdgeNorm, Edges, Epsilon, Resistance, TangentRule, TorqueLength,
+    Wrench,
+};
 pub use ::hand::{Hand, OutcomeCounts};
 pub use ::shape::io::Format;
 pub use ::shape::{FitSettings, PointCloud, RadialShape, Surface};

@@ -1,6 +1,6 @@
 //! How quality is measured on one object, and when a grasp counts as stable.
 
-use grasp::{Contact, Convention, Edges, Epsilon, GraspModel, Workspace};
+use grasp::{Contact, Convention, Epsilon, GraspModel, Workspace};
 use nalgebra::Point3;
 use space::point::contacts_on;
 use space::{MonotoneAscent, Objective, ResolvedConvention};
@@ -9,9 +9,6 @@ use sph::Direction;
 use crate::error::Error;
 use crate::grasp::{Grasp, Source};
 use crate::object::Object;
-
-/// The largest friction coefficient tried in the search for the least.
-const MOST_FRICTION: f64 = 100.0;
 
 /// A convention resolved on one object.
 ///
@@ -23,26 +20,6 @@ pub struct Measure<'a> {
     object: &'a Object,
     rule: Convention,
     resolved: ResolvedConvention,
-}
-
-/// All metrics of one grasp. Lengths are those of the convention.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Metrics {
-    /// Epsilon quality, with its proved interval.
-    pub epsilon: Epsilon,
-    /// Volume of the convex hull of the wrenches, in the sixth power of the wrench unit; `None` for
-    /// round cones, whose hull is not a polytope.
-    pub volume: Option<f64>,
-    /// Epsilon quality when every contact force is bounded by itself (L∞) and not their sum.
-    pub linf: f64,
-    /// The largest weight that every edge keeps in a balance of all edges, times their number; `None`
-    /// where no weights balance, and for round cones.
-    pub min_weight: Option<f64>,
-    /// Smallest singular value of the grasp map.
-    pub smallest_singular_value: f64,
-    /// The least friction coefficient under which the grasp is closed; `None` when it is not closed
-    /// under the largest that is tried, 100.
-    pub least_friction: Option<f64>,
 }
 
 impl Object {
@@ -115,14 +92,6 @@ impl<'a> Measure<'a> {
         Ok(grasp::epsilon(&model, &mut Workspace::new())?)
     }
 
-    /// All metrics of contacts in the centred frame.
-    ///
-    /// # Errors
-    /// A contact is not finite, or there are too few.
-    pub fn metrics(&self, contacts: &[Contact]) -> Result<Metrics, Error> {
-        metrics(contacts, &self.centre(), self.convention())
-    }
-
     /// The grasp with contacts in the given directions.
     ///
     /// # Errors
@@ -157,31 +126,4 @@ impl<'a> Measure<'a> {
         let end = MonotoneAscent::default().climb(field, start, &mut objective, |_| {})?;
         self.grasp(&end.contacts, grasp.source().clone())
     }
-}
-
-/// All metrics of contacts about a centre, under a convention whose torque length is resolved.
-///
-/// # Errors
-/// A contact is not finite, or there are too few.
-pub fn metrics(
-    contacts: &[Contact],
-    centre: &Point3<f64>,
-    convention: &Convention,
-) -> Result<Metrics, Error> {
-    let model = GraspModel::new(contacts, centre, convention);
-    let polygonal = matches!(convention.edges, Edges::Polygon(_));
-    let mut workspace = Workspace::new();
-    let epsilon = grasp::epsilon(&model, &mut workspace)?;
-    Ok(Metrics {
-        epsilon,
-        volume: polygonal.then(|| grasp::volume(&model)).transpose()?,
-        linf: grasp::epsilon_linf(&model, &mut workspace)?.quality,
-        min_weight: if polygonal {
-            grasp::min_weight(&model)?
-        } else {
-            None
-        },
-        smallest_singular_value: grasp::smallest_singular_value(&model)?,
-        least_friction: grasp::friction_needed(&model, MOST_FRICTION, &mut workspace)?.closure,
-    })
 }

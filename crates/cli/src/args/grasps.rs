@@ -8,9 +8,15 @@ use super::ConventionOptions;
 
 #[derive(Debug, Args)]
 pub(crate) struct QualityOptions {
-    /// Grasps: grasps.json, or .npy / .csv with 21 columns c1 c2 c3 n1 n2 n3 z.
+    /// The grasps: a `grasps.json`, or rows of 21 numbers in .npy or .csv (three contact points, their
+    /// inward unit normals, and the point about which torques are taken).
     pub(crate) grasps: PathBuf,
-    /// Result, N×3 in .npy: quality, lower, upper.
+    /// Also compute volume, L-infinity, min-weight, least friction, smallest singular value and the
+    /// normal force per load, one named column each.
+    #[arg(long)]
+    pub(crate) all: bool,
+    /// File for the result, one row per grasp: quality, lower and upper bound, or all columns with
+    /// `--all`. A name that ends in .csv gives a table with a header, any other one an .npy array.
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]

@@ -1,10 +1,12 @@
-//! `moduli quality`: a number, and an interval that holds it, for every grasp given.
+//! `moduli quality`: the quality of given grasps, each with an interval that contains it.
+
+mod grasps;
 
 use std::path::Path;
 use std::time::Instant;
 
-use grasp::{CentreRule, Contact, Convention, Epsilon, Grasp, Workspace};
-use nalgebra::{Point3, UnitVector3, Vector3};
+use grasp::{CentreRule, Convention, Epsilon, Grasp, Workspace};
+use moduli::Metrics;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -12,10 +14,10 @@ use crate::args::{Common, QualityOptions};
 use crate::failure::Failure;
 use crate::{input, output};
 
-/// c1 c2 c3 n1 n2 n3 z.
-const COLUMNS: usize = 21;
-/// Grasps a thread takes at once.
+/// Grasps that one thread takes at once.
 const CHUNK: usize = 256;
+/// Up to this many grasps are printed one by one.
+const FEW: usize = 20;
 
 #[derive(Serialize)]
 struct QualityLine {
@@ -26,174 +28,154 @@ struct QualityLine {
     convention: String,
     seconds: f64,
     us_per_grasp: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    columns: Option<&'static [&'static str]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rows: Option<Vec<Vec<Option<f64>>>>,
+}
+
+/// One grasp: whether it is force-closed, and its numbers in the order of [`Metrics::COLUMNS`].
+struct Row {
+    closed: bool,
+    cells: Vec<Option<f64>>,
 }
 
 pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failure> {
     let mut convention = input::convention(&options.convention)?;
     // The centre comes with every grasp.
     convention.centre = CentreRule::Given;
-    let grasps = read_grasps(&options.grasps)?;
+    let grasps = grasps::read_grasps(&options.grasps)?;
     let start = Instant::now();
-    let results = measure(&grasps, &convention, &options.grasps)?;
-    let seconds = start.elapsed().as_secs_f64();
-    let numbers: Vec<f64> = results.iter().map(|e| e.value(&convention)).collect();
-    if let Some(path) = &options.output {
-        let rows: Vec<f64> = results
-            .iter()
-            .zip(&numbers)
-            .flat_map(|(e, q)| [*q, e.lower, e.upper])
-            .collect();
-        output::write_file(path, &output::npy(3, rows)?)?;
-    }
-    let count = grasps.len() as f64;
-    let line = QualityLine {
-        grasps: grasps.len(),
-        closed: results.iter().filter(|e| e.closed).count(),
-        mean: numbers.iter().sum::<f64>() / count,
-        best: numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        convention: convention.name.clone(),
-        seconds,
-        us_per_grasp: 1e6 * seconds / count,
+    let path = &options.grasps;
+    let rows = if options.all {
+        let all = |grasp: &Grasp, _: &mut Workspace| {
+            let metrics = Metrics::of(&grasp.contacts, &grasp.centre, &convention)?;
+            Ok(Row {
+                closed: metrics.epsilon.closed,
+                cells: metrics.row(&convention).to_vec(),
+            })
+        };
+        measure(&grasps, path, all)?
+    } else {
+        let plain = |grasp: &Grasp, work: &mut Workspace| {
+            let epsilon = grasp::epsilon(&grasp.under(&convention), work)?;
+            Ok(plain_row(&epsilon, &convention))
+        };
+        measure(&grasps, path, plain)?
     };
+    let seconds = start.elapsed().as_secs_f64();
+    let columns = &Metrics::COLUMNS[..rows[0].cells.len()];
+    if let Some(path) = &options.output {
+        let bytes = table(path, columns, &rows)?;
+        output::write_file(path, &bytes)?;
+    }
+    let line = summary(&rows, &convention, seconds);
     if common.json {
-        return output::say_json(&line);
+        return output::say_json(&QualityLine {
+            columns: options.all.then_some(columns),
+            rows: options
+                .all
+                .then(|| rows.into_iter().map(|row| row.cells).collect()),
+            ..line
+        });
     }
-    if grasps.len() <= 20 {
-        for (i, (e, q)) in results.iter().zip(&numbers).enumerate() {
-            output::say(format!("{i:5}  {q:10.6}  [{:.6}, {:.6}]", e.lower, e.upper));
-        }
-    }
+    print(options.all, columns, &rows);
     output::say(format!(
-        "{} grasps, {} force-closed, mean {:.6}, best {:.6} under `{}`; {:.1} µs a grasp",
+        "{} grasps, {} force-closed, mean {:.6}, best {:.6} under `{}`; {:.1} µs per grasp",
         line.grasps, line.closed, line.mean, line.best, line.convention, line.us_per_grasp
     ));
     Ok(())
 }
 
+fn plain_row(epsilon: &Epsilon, convention: &Convention) -> Row {
+    let cells = [epsilon.value(convention), epsilon.lower, epsilon.upper];
+    Row {
+        closed: epsilon.closed,
+        cells: cells.map(Some).to_vec(),
+    }
+}
+
+/// One row per grasp, computed in parallel.
 fn measure(
     grasps: &[Grasp],
-    convention: &Convention,
     path: &Path,
-) -> Result<Vec<Epsilon>, Failure> {
+    row: impl Fn(&Grasp, &mut Workspace) -> Result<Row, moduli::Error> + Sync,
+) -> Result<Vec<Row>, Failure> {
     // Of several failures the first is returned, so that threads do not decide which.
-    let chunks: Vec<Result<Vec<Epsilon>, Failure>> = grasps
+    let chunks: Vec<Result<Vec<_>, Failure>> = grasps
         .par_chunks(CHUNK)
         .enumerate()
         .map(|(chunk, grasps)| {
             let mut work = Workspace::new();
             let one = |(i, g): (usize, &Grasp)| {
-                grasp::epsilon(&g.under(convention), &mut work)
+                row(g, &mut work)
                     .map_err(|e| Failure::input(path, format!("grasp {}: {e}", chunk * CHUNK + i)))
             };
             grasps.iter().enumerate().map(one).collect()
         })
         .collect();
-    let chunks: Vec<Vec<Epsilon>> = chunks.into_iter().collect::<Result<_, _>>()?;
-    Ok(chunks.concat())
+    let chunks: Vec<Vec<Row>> = chunks.into_iter().collect::<Result<_, _>>()?;
+    Ok(chunks.into_iter().flatten().collect())
 }
 
-fn read_grasps(path: &Path) -> Result<Vec<Grasp>, Failure> {
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-    let grasps = match extension {
-        "npy" => {
-            let table = input::table(path, COLUMNS)?;
-            table
-                .rows()
-                .enumerate()
-                .map(|(row, cells)| from_row(path, row, cells))
-                .collect::<Result<Vec<_>, _>>()?
+fn summary(rows: &[Row], convention: &Convention, seconds: f64) -> QualityLine {
+    let qualities = || rows.iter().filter_map(|row| row.cells[0]);
+    let count = rows.len() as f64;
+    QualityLine {
+        grasps: rows.len(),
+        closed: rows.iter().filter(|row| row.closed).count(),
+        mean: qualities().sum::<f64>() / count,
+        best: qualities().fold(f64::NEG_INFINITY, f64::max),
+        convention: convention.name.clone(),
+        seconds,
+        us_per_grasp: 1e6 * seconds / count,
+        columns: None,
+        rows: None,
+    }
+}
+
+/// The result as CSV with a header, where the name ends in `.csv`, or as `.npy`; what a grasp does
+/// not have is an empty cell or NaN.
+fn table(path: &Path, columns: &[&str], rows: &[Row]) -> Result<Vec<u8>, Failure> {
+    if path.extension().is_some_and(|e| e == "csv") {
+        let cell = |value: &Option<f64>| value.map_or_else(String::new, |v| v.to_string());
+        let line = |row: &Row| row.cells.iter().map(cell).collect::<Vec<_>>().join(",");
+        let lines = std::iter::once(columns.join(",")).chain(rows.iter().map(line));
+        return Ok(lines.map(|line| line + "\n").collect::<String>().into_bytes());
+    }
+    let cells = rows.iter().flat_map(|row| &row.cells);
+    let values = cells.map(|value| value.unwrap_or(f64::NAN)).collect();
+    output::npy(columns.len(), values)
+}
+
+/// A few grasps are printed one by one; of many, the mean over those that have a value.
+fn print(all: bool, columns: &[&str], rows: &[Row]) {
+    if !all {
+        if rows.len() <= FEW {
+            for (i, row) in rows.iter().enumerate() {
+                let [q, lower, upper] = [0, 1, 2].map(|k| row.cells[k].unwrap_or(f64::NAN));
+                output::say(format!("{i:5}  {q:10.6}  [{lower:.6}, {upper:.6}]"));
+            }
         }
-        "csv" => read_csv(path)?,
-        "json" => read_json(path)?,
-        _ => {
-            return Err(Failure::input(
-                path,
-                "expected grasps in a .json, .npy or .csv file",
-            ));
-        }
+        return;
+    }
+    let width = |name: &str| name.len().max(10);
+    let line = |first: &str, cells: Vec<String>| {
+        let cells = cells.iter().zip(columns);
+        let cells = cells.map(|(cell, name)| format!("  {cell:>w$}", w = width(name)));
+        output::say(format!("{first:>5}{}", cells.collect::<String>()));
     };
-    if grasps.is_empty() {
-        return Err(Failure::input(path, "holds no grasps"));
-    }
-    Ok(grasps)
-}
-
-/// A grasp from 21 numbers; `row` names it in errors.
-fn from_row(path: &Path, row: usize, cells: &[f64]) -> Result<Grasp, Failure> {
-    if let Some(column) = cells.iter().position(|v| !v.is_finite()) {
-        return Err(Failure::input(
-            path,
-            format!(
-                "row {row}, column {column} is {}; expected a finite number",
-                cells[column]
-            ),
-        ));
-    }
-    let triple = |k: usize| Vector3::new(cells[3 * k], cells[3 * k + 1], cells[3 * k + 2]);
-    let contacts = (0..3)
-        .map(|k| Contact {
-            position: Point3::from(triple(k)),
-            inward_normal: UnitVector3::new_unchecked(triple(k + 3)),
-        })
-        .collect();
-    Grasp::new(contacts, Point3::from(triple(6)))
-        .map_err(|e| Failure::input(path, format!("row {row}: {e}")))
-}
-
-/// Comma separated rows; a first row of words is a header.
-fn read_csv(path: &Path) -> Result<Vec<Grasp>, Failure> {
-    let text = String::from_utf8(input::read(path)?)
-        .map_err(|_| Failure::input(path, "not a text file"))?;
-    let mut grasps = Vec::new();
-    for (number, line) in text.lines().enumerate() {
-        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
-        let header = number == 0 && cells.iter().all(|c| c.parse::<f64>().is_err());
-        if line.trim().is_empty() || header {
-            continue;
+    let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.4e}"));
+    line("", columns.iter().map(|&name| name.to_owned()).collect());
+    if rows.len() <= FEW {
+        for (i, row) in rows.iter().enumerate() {
+            line(&i.to_string(), row.cells.iter().map(|&v| number(v)).collect());
         }
-        let place = format!("line {}", number + 1);
-        if cells.len() != COLUMNS {
-            return Err(Failure::input(
-                path,
-                format!("{place} has {} columns; expected {COLUMNS}", cells.len()),
-            ));
-        }
-        let parse = |(column, cell): (usize, &&str)| {
-            cell.parse::<f64>().map_err(|_| {
-                Failure::input(
-                    path,
-                    format!("{place}, column {column} is `{cell}`; expected a number"),
-                )
-            })
-        };
-        let cells: Vec<f64> = cells
-            .iter()
-            .enumerate()
-            .map(parse)
-            .collect::<Result<_, _>>()?;
-        grasps.push(from_row(path, grasps.len(), &cells)?);
+        return;
     }
-    Ok(grasps)
-}
-
-/// Our own grasps.json; torques are taken about the object's centre.
-fn read_json(path: &Path) -> Result<Vec<Grasp>, Failure> {
-    let file = input::grasps(path)?;
-    file.grasps
-        .iter()
-        .enumerate()
-        .map(|(i, g)| {
-            let contacts = g
-                .contacts_m
-                .iter()
-                .zip(&g.inward_normals)
-                .map(|(c, n)| Contact {
-                    position: Point3::from(*c),
-                    inward_normal: UnitVector3::new_unchecked(Vector3::from(*n)),
-                })
-                .collect();
-            Grasp::new(contacts, Point3::from(file.object.centre_m))
-                .map_err(|e| Failure::input(path, format!("grasp {i}: {e}")))
-        })
-        .collect()
+    let mean = |column: usize| {
+        let values: Vec<f64> = rows.iter().filter_map(|row| row.cells[column]).collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    };
+    line("mean", (0..columns.len()).map(|k| number(mean(k))).collect());
 }

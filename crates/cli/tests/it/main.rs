@@ -4,4 +4,5 @@ mod ascend_transfer;
 mod commands;
 mod common;
 mod hands;
+mod metrics;
 mod results;
