@@ -13,7 +13,9 @@ pub(crate) use grasps::{
 pub(crate) use hands::{
     GraspOptions, HandCheckOptions, HandCommand, HandOptions, SynthesizeOptions,
 };
-pub(crate) use shapes::{DistanceOptions, EvalOptions, FitOptions, InfoOptions, MeshOptions};
+pub(crate) use shapes::{
+    DistanceOptions, EvalOptions, FitOptions, InfoOptions, MeshOptions, Model,
+};
 
 /// From a scan to grasps: smooth surfaces, certified quality, transfer between objects.
 #[derive(Debug, Parser)]

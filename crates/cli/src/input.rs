@@ -3,21 +3,25 @@
 use std::path::Path;
 
 use grasp::{Convention, Edges};
-use moduli::Object;
+use moduli::{Object, SphericalObject};
+use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use record::{EnvelopeError, GraspsFile, ShapeRecord};
+use record::{EnvelopeError, GraspsFile, Kind, ShapeRecord, SphericalRecord, envelope};
 use run::npy::Table;
 use shape::io::{Loaded, Warning};
 use shape::{Fit, FitError, FitSettings, PointCloud};
+use sph::Direction;
 
 use crate::args::{CloudOptions, ConventionOptions};
 use crate::failure::Failure;
 use crate::files;
 use crate::output::warn;
 
-/// Share of unseen directions from which on the user is told.
+/// Share of unseen directions above which the user is warned.
 const GUESSED: f64 = 0.1;
+/// How far the length of a given direction may be from 1.
+const UNIT_TOLERANCE: f64 = 1e-6;
 
 /// The bytes of a file.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
@@ -88,11 +92,53 @@ pub(crate) fn fit(cloud: &PointCloud, name: &str, options: &CloudOptions) -> Res
     Ok(fit)
 }
 
-/// A shape file.
-pub(crate) fn shape_record(path: &Path) -> Result<ShapeRecord, Failure> {
-    ShapeRecord::from_bytes(&read(path)?).map_err(|e| {
+/// The unit vectors of a table, N×3 in a `.npy` file.
+pub(crate) fn directions(path: &Path) -> Result<Vec<Direction>, Failure> {
+    let table = table(path, 3)?;
+    let mut directions = Vec::with_capacity(table.row_count());
+    for (row, v) in table.rows().enumerate() {
+        let v = Vector3::new(v[0], v[1], v[2]);
+        let length = v.norm();
+        // Written so that NaN fails too.
+        if !((length - 1.0).abs() <= UNIT_TOLERANCE) {
+            return Err(Failure::input(
+                path,
+                format!("row {row} has length {length}; expected a unit vector"),
+            ));
+        }
+        directions.push(Direction::new_unchecked(v / length));
+    }
+    Ok(directions)
+}
+
+/// An object of either kind of surface.
+pub(crate) enum Surfaced {
+    /// A radius per direction.
+    Radial(Object),
+    /// A map of the sphere into space.
+    Spherical(SphericalObject),
+}
+
+/// The object of a shape file of either kind; its surface is proved again.
+pub(crate) fn surfaced(path: &Path) -> Result<Surfaced, Failure> {
+    let bytes = read(path)?;
+    if envelope::kind_of(&bytes) != Some(Kind::Spherical) {
+        return Ok(Surfaced::Radial(object(path)?));
+    }
+    let record = SphericalRecord::from_bytes(&bytes).map_err(|e| Failure::input(path, e))?;
+    let object = SphericalObject::from_record(&record).map_err(|e| Failure::input(path, e))?;
+    Ok(Surfaced::Spherical(object))
+}
+
+/// A file with a radial shape.
+fn shape_record(path: &Path) -> Result<ShapeRecord, Failure> {
+    let bytes = read(path)?;
+    ShapeRecord::from_bytes(&bytes).map_err(|e| {
         let hint = match e {
             EnvelopeError::Magic => "; `moduli fit` makes shapes from clouds and meshes",
+            EnvelopeError::Kind { .. } if envelope::kind_of(&bytes) == Some(Kind::Spherical) => {
+                "; this command needs a radial shape, which `moduli fit --model radial` makes"
+            }
             _ => "",
         };
         Failure::input(path, format!("{e}{hint}"))

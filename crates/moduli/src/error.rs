@@ -17,6 +17,17 @@ pub enum Error {
     /// The cloud has no proved surface.
     #[error(transparent)]
     Fit(#[from] shape::FitError),
+    /// Points with sphere coordinates have no proved surface.
+    #[error(transparent)]
+    SphericalFit(#[from] shape::SphericalFitError),
+    /// Another number of directions than of points.
+    #[error("{directions} directions for {points} points; expected one direction per point")]
+    DirectionCount {
+        /// The directions given.
+        directions: usize,
+        /// The points of the cloud.
+        points: usize,
+    },
     /// A stored shape or library is damaged.
     #[error(transparent)]
     Stored(#[from] StoredShapeError),

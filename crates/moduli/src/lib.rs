@@ -42,6 +42,7 @@ mod metrics;
 mod object;
 mod plan;
 pub mod records;
+mod spherical_object;
 mod synthesis;
 
 pub use crate::error::Error;
@@ -53,15 +54,16 @@ pub use crate::measure::Measure;
 pub use crate::metrics::Metrics;
 pub use crate::object::{FitReport, Object};
 pub use crate::plan::{Plan, Planned, Progress, Stage, TransferCounts};
+pub use crate::spherical_object::{SphericalObject, SurfacePoint};
 pub use crate::synthesis::Poses;
 
 pub use ::grasp::{
-    CentreRule, Contact, Convention, EdgeNorm, Edges, Epsilon, Resistance, TangentRule, TorqueLength,
-    Wrench,
+    CentreRule, Contact, Convention, EdgeNorm, Edges, Epsilon, Resistance, TangentRule,
+    TorqueLength, Wrench,
 };
 pub use ::hand::{Hand, OutcomeCounts};
 pub use ::shape::io::Format;
-pub use ::shape::{FitSettings, PointCloud, RadialShape, Surface};
+pub use ::shape::{FitSettings, PointCloud, RadialShape, SphericalShape, Surface};
 pub use ::sph::Direction;
 pub use nalgebra;
 

@@ -77,8 +77,7 @@ impl Metrics {
             } else {
                 None
             },
-            least_friction: grasp::friction_needed(&model, MOST_FRICTION, &mut workspace)?
-                .closure,
+            least_friction: grasp::friction_needed(&model, MOST_FRICTION, &mut workspace)?.closure,
             smallest_singular_value: grasp::smallest_singular_value(&model)?,
             normal_force_per_load: normal_force_per_load(&model)?,
         })

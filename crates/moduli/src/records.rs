@@ -21,6 +21,9 @@ pub enum StoredShapeError {
     /// The radius is not proved positive.
     #[error(transparent)]
     Radial(#[from] RadialError),
+    /// The map of a spherical shape is not proved an immersion.
+    #[error(transparent)]
+    Spherical(shape::SphericalError),
     /// The centre is not finite.
     #[error("the centre of the stored shape is not finite")]
     Centre,

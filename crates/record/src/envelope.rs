@@ -19,6 +19,8 @@ pub enum Kind {
     Shape,
     /// A [`crate::LibraryRecord`].
     Library,
+    /// A [`crate::SphericalRecord`].
+    Spherical,
 }
 
 impl Kind {
@@ -26,13 +28,14 @@ impl Kind {
         match self {
             Kind::Shape => 1,
             Kind::Library => 2,
+            Kind::Spherical => 3,
         }
     }
 
     /// The version that is written, and the only one that is read.
     fn version(self) -> u16 {
         match self {
-            Kind::Shape | Kind::Library => 1,
+            Kind::Shape | Kind::Library | Kind::Spherical => 1,
         }
     }
 
@@ -40,11 +43,12 @@ impl Kind {
         match self {
             Kind::Shape => "shape",
             Kind::Library => "library",
+            Kind::Spherical => "spherical shape",
         }
     }
 
     fn from_code(code: u16) -> Option<Self> {
-        [Kind::Shape, Kind::Library]
+        [Kind::Shape, Kind::Library, Kind::Spherical]
             .into_iter()
             .find(|kind| kind.code() == code)
     }

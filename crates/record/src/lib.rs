@@ -1,6 +1,6 @@
 //! The file types of moduli: what is stored, each with a version.
 //!
-//! - [`ShapeRecord`] and [`LibraryRecord`] are binary files. [`envelope`] puts a header in front of
+//! - [`ShapeRecord`], [`SphericalRecord`] and [`LibraryRecord`] are binary files. [`envelope`] puts a header in front of
 //!   them that names the kind and the version and carries a checksum of the body.
 //! - [`GraspsFile`] is `grasps.json`; [`isaac_grasps`] writes its grasps as YAML for Isaac Sim.
 //!
@@ -30,9 +30,11 @@ pub mod grasps;
 pub mod isaac;
 pub mod library;
 pub mod shape_record;
+pub mod spherical_record;
 
 pub use envelope::{EnvelopeError, Kind};
 pub use grasps::{GraspRecord, GraspsFile, GraspsFileError};
 pub use isaac::isaac_grasps;
 pub use library::{LibraryEntry, LibraryGrasp, LibraryRecord};
 pub use shape_record::ShapeRecord;
+pub use spherical_record::SphericalRecord;

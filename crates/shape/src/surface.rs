@@ -18,6 +18,26 @@ pub struct Differential {
     pub normal_slope: Matrix3<f64>,
 }
 
+impl Differential {
+    /// The two principal curvatures at `p`, 1/m, the larger first.
+    ///
+    /// They are the eigenvalues of the shape operator of the outward normal N, dN = df ∘ S: 1/R on a
+    /// sphere of radius R, positive where the solid is convex. `p` is the direction at which the
+    /// differential was taken.
+    pub fn principal_curvatures(&self, p: &Direction) -> [f64; 2] {
+        let (u, v) = sph::direction::tangent_frame(p);
+        let (fu, fv) = (self.position_slope * u, self.position_slope * v);
+        let (nu, nv) = (-(self.normal_slope * u), -(self.normal_slope * v));
+        let (e, f, g) = (fu.dot(&fu), fu.dot(&fv), fv.dot(&fv));
+        let (l, m, n) = (nu.dot(&fu), 0.5 * (nu.dot(&fv) + nv.dot(&fu)), nv.dot(&fv));
+        let area = e * g - f * f;
+        let mean = 0.5 * (e * n - 2.0 * f * m + g * l) / area;
+        let gauss = (l * n - m * m) / area;
+        let half_difference = (mean * mean - gauss).max(0.0).sqrt();
+        [mean + half_difference, mean - half_difference]
+    }
+}
+
 /// A smooth closed surface f: S² → R³ in its centred frame, metres.
 pub trait Surface {
     /// f(p).

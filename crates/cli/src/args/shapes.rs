@@ -2,9 +2,18 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::{CloudOptions, count_in};
+
+/// The kind of surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Model {
+    /// A radius per direction from the mean of the cloud; the object must be star-shaped.
+    Radial,
+    /// A map of the sphere into space, for given sphere coordinates of the points.
+    Spherical,
+}
 
 #[derive(Debug, Args)]
 pub(crate) struct FitOptions {
@@ -14,6 +23,12 @@ pub(crate) struct FitOptions {
     /// Where to write the shape; a folder when there are several clouds.
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
+    /// Kind of surface.
+    #[arg(long, value_enum, default_value_t = Model::Radial)]
+    pub(crate) model: Model,
+    /// For the spherical model: the place of each point on the sphere, as unit vectors, N×3 in .npy.
+    #[arg(long, value_name = "U.npy")]
+    pub(crate) directions: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) cloud: CloudOptions,
 }

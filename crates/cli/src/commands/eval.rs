@@ -1,53 +1,49 @@
-//! `moduli eval`: a shape at given directions.
+//! `moduli eval`: a surface at given directions.
 
-use nalgebra::Vector3;
+use moduli::{Object, SphericalObject};
 use serde::Serialize;
 use shape::Surface;
 use sph::Direction;
 
 use crate::args::{Common, EvalOptions};
 use crate::failure::Failure;
+use crate::input::Surfaced;
 use crate::{input, output};
 
 /// Radius, its gradient (3) and the outward normal (3).
-const COLUMNS: usize = 7;
+const RADIAL: usize = 7;
+/// Point (3), outward normal (3), mean curvature and the two principal curvatures.
+const SPHERICAL: usize = 9;
 
 #[derive(Serialize)]
 struct EvalLine {
     directions: usize,
+    model: &'static str,
     radius_min_m: f64,
     radius_max_m: f64,
 }
 
+/// Rows of numbers, and the least and the largest distance from the centre.
+struct Evaluated {
+    columns: usize,
+    values: Vec<f64>,
+    radii: (f64, f64),
+}
+
 pub(crate) fn run(options: &EvalOptions, common: &Common) -> Result<(), Failure> {
-    let object = input::object(&options.shape)?;
-    let shape = object.shape();
-    let table = input::table(&options.directions, 3)?;
-    let mut values = Vec::with_capacity(table.row_count() * COLUMNS);
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for (row, v) in table.rows().enumerate() {
-        let v = Vector3::new(v[0], v[1], v[2]);
-        let length = v.norm();
-        if !((length - 1.0).abs() <= 1e-6) {
-            return Err(Failure::input(
-                &options.directions,
-                format!("row {row} has length {length}; expected a unit vector"),
-            ));
-        }
-        let p = Direction::new_unchecked(v / length);
-        let (radius, gradient) = shape.radius_and_gradient(&p);
-        let (_, inward) = shape.contact(&p);
-        values.push(radius);
-        values.extend(gradient.iter());
-        values.extend((-inward.into_inner()).iter());
-        low = low.min(radius);
-        high = high.max(radius);
-    }
-    output::write_file(&options.output, &output::npy(COLUMNS, values)?)?;
+    let surfaced = input::surfaced(&options.shape)?;
+    let directions = input::directions(&options.directions)?;
+    let (model, evaluated) = match &surfaced {
+        Surfaced::Radial(object) => ("radial", radial(object, &directions)),
+        Surfaced::Spherical(object) => ("spherical", spherical(object, &directions)),
+    };
+    let bytes = output::npy(evaluated.columns, evaluated.values)?;
+    output::write_file(&options.output, &bytes)?;
     let line = EvalLine {
-        directions: table.row_count(),
-        radius_min_m: low,
-        radius_max_m: high,
+        directions: directions.len(),
+        model,
+        radius_min_m: evaluated.radii.0,
+        radius_max_m: evaluated.radii.1,
     };
     if common.json {
         return output::say_json(&line);
@@ -55,9 +51,48 @@ pub(crate) fn run(options: &EvalOptions, common: &Common) -> Result<(), Failure>
     output::say(format!(
         "{} directions, radius {:.3} to {:.3} mm, written to {}",
         line.directions,
-        1e3 * low,
-        1e3 * high,
+        1e3 * line.radius_min_m,
+        1e3 * line.radius_max_m,
         options.output.display()
     ));
     Ok(())
+}
+
+fn radial(object: &Object, directions: &[Direction]) -> Evaluated {
+    let shape = object.shape();
+    let mut values = Vec::with_capacity(directions.len() * RADIAL);
+    let mut radii = (f64::INFINITY, f64::NEG_INFINITY);
+    for p in directions {
+        let (radius, gradient) = shape.radius_and_gradient(p);
+        let (_, inward) = shape.contact(p);
+        values.push(radius);
+        values.extend(gradient.iter());
+        values.extend((-inward.into_inner()).iter());
+        radii = (radii.0.min(radius), radii.1.max(radius));
+    }
+    Evaluated {
+        columns: RADIAL,
+        values,
+        radii,
+    }
+}
+
+fn spherical(object: &SphericalObject, directions: &[Direction]) -> Evaluated {
+    let centre = object.frame().centre_in_cloud();
+    let mut values = Vec::with_capacity(directions.len() * SPHERICAL);
+    let mut radii = (f64::INFINITY, f64::NEG_INFINITY);
+    for p in directions {
+        let at = object.at(p);
+        values.extend(at.position.iter());
+        values.extend(at.outward_normal.iter());
+        values.push(at.mean_curvature());
+        values.extend(at.principal_curvatures);
+        let radius = (at.position - centre).norm();
+        radii = (radii.0.min(radius), radii.1.max(radius));
+    }
+    Evaluated {
+        columns: SPHERICAL,
+        values,
+        radii,
+    }
 }

@@ -1,4 +1,6 @@
-//! `moduli fit`: clouds to certified shapes.
+//! `moduli fit`: smooth surfaces of clouds, proved valid.
+
+mod spherical;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -7,7 +9,7 @@ use std::time::Instant;
 use moduli::Object;
 use serde::Serialize;
 
-use crate::args::{Common, FitOptions};
+use crate::args::{Common, FitOptions, Model};
 use crate::failure::Failure;
 use crate::{input, output};
 
@@ -15,6 +17,7 @@ use crate::{input, output};
 struct FitLine {
     cloud: String,
     points: usize,
+    model: &'static str,
     degree: usize,
     lambda: f64,
     rms_m: f64,
@@ -32,6 +35,12 @@ struct FitLine {
 
 pub(crate) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> {
     refuse_shared_names(options)?;
+    if options.model == Model::Spherical {
+        return spherical::run(options, common);
+    }
+    if options.directions.is_some() {
+        return Err(Failure::usage("--directions needs --model spherical"));
+    }
     if !common.json {
         output::say(format!(
             "{:28} {:>7} {:>3} {:>9} {:>8} {:>8} {:>17} {:>9} {:>7}",
@@ -86,6 +95,7 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Fail
     Ok(FitLine {
         cloud: path.display().to_string(),
         points,
+        model: "radial",
         degree: fit.shape.degree(),
         lambda: fit.lambda,
         rms_m: fit.rms,

@@ -1,7 +1,10 @@
 //! `moduli info`: what a file holds.
 
+use moduli::SphericalObject;
 use moduli::records::{StoredShapeError, stored_shape};
-use record::{GraspsFile, GraspsFileError, Kind, LibraryRecord, ShapeRecord, envelope};
+use record::{
+    GraspsFile, GraspsFileError, Kind, LibraryRecord, ShapeRecord, SphericalRecord, envelope,
+};
 
 use shape::io::{Geometry, Loaded};
 
@@ -16,6 +19,13 @@ pub(crate) fn run(options: &InfoOptions) -> Result<(), Failure> {
         Some(Kind::Shape) => {
             let record = ShapeRecord::from_bytes(&bytes).map_err(|e| Failure::input(path, e))?;
             shape_lines(&record).map_err(|e| Failure::input(path, e))?
+        }
+        Some(Kind::Spherical) => {
+            let record =
+                SphericalRecord::from_bytes(&bytes).map_err(|e| Failure::input(path, e))?;
+            let object =
+                SphericalObject::from_record(&record).map_err(|e| Failure::input(path, e))?;
+            spherical_lines(&object)
         }
         Some(Kind::Library) => {
             let record = LibraryRecord::from_bytes(&bytes).map_err(|e| Failure::input(path, e))?;
@@ -56,6 +66,35 @@ fn shape_lines(record: &ShapeRecord) -> Result<Vec<String>, StoredShapeError> {
             record.centre_in_cloud_m
         ),
     ])
+}
+
+fn spherical_lines(object: &SphericalObject) -> Vec<String> {
+    let shape = object.shape();
+    let immersion = shape.immersion();
+    vec![
+        format!("shape       {}, a map of the sphere", object.name()),
+        format!("degree      {}", shape.degree()),
+        format!(
+            "immersion   proved: area element at least {:.3e} m²; seen {:.3e} to {:.3e} m²",
+            immersion.lower, immersion.seen_lower, immersion.seen_upper
+        ),
+        format!(
+            "fit         {} points, rms {:.3} mm, λ {:.3e}, {:.3e}, {:.3e}",
+            object.points(),
+            1e3 * object.rms(),
+            object.lambda()[0],
+            object.lambda()[1],
+            object.lambda()[2]
+        ),
+        format!(
+            "volume      {:.2} cm³",
+            1e6 * shape.mass_properties().volume
+        ),
+        format!(
+            "centre      {:?} m in the frame of the cloud",
+            <[f64; 3]>::from(object.frame().centre_in_cloud())
+        ),
+    ]
 }
 
 fn library_lines(record: &LibraryRecord) -> Vec<String> {

@@ -2,13 +2,17 @@
 
 use crate::args::MeshOptions;
 use crate::failure::Failure;
+use crate::input::Surfaced;
 use crate::{input, output};
 
 pub(crate) fn run(options: &MeshOptions) -> Result<(), Failure> {
-    let object = input::object(&options.shape)?;
-    let mut mesh = object.shape().mesh(options.rows, options.columns);
+    let (rows, columns) = (options.rows, options.columns);
+    let (mut mesh, frame) = match input::surfaced(&options.shape)? {
+        Surfaced::Radial(object) => (object.shape().mesh(rows, columns), *object.frame()),
+        Surfaced::Spherical(object) => (object.shape().mesh(rows, columns), *object.frame()),
+    };
     for vertex in &mut mesh.vertices {
-        *vertex = object.frame().to_cloud(vertex);
+        *vertex = frame.to_cloud(vertex);
     }
     let mut bytes = Vec::new();
     shape::io::write_ply(&mesh, &mut bytes)

@@ -141,7 +141,10 @@ fn table(path: &Path, columns: &[&str], rows: &[Row]) -> Result<Vec<u8>, Failure
         let cell = |value: &Option<f64>| value.map_or_else(String::new, |v| v.to_string());
         let line = |row: &Row| row.cells.iter().map(cell).collect::<Vec<_>>().join(",");
         let lines = std::iter::once(columns.join(",")).chain(rows.iter().map(line));
-        return Ok(lines.map(|line| line + "\n").collect::<String>().into_bytes());
+        return Ok(lines
+            .map(|line| line + "\n")
+            .collect::<String>()
+            .into_bytes());
     }
     let cells = rows.iter().flat_map(|row| &row.cells);
     let values = cells.map(|value| value.unwrap_or(f64::NAN)).collect();
@@ -169,7 +172,10 @@ fn print(all: bool, columns: &[&str], rows: &[Row]) {
     line("", columns.iter().map(|&name| name.to_owned()).collect());
     if rows.len() <= FEW {
         for (i, row) in rows.iter().enumerate() {
-            line(&i.to_string(), row.cells.iter().map(|&v| number(v)).collect());
+            line(
+                &i.to_string(),
+                row.cells.iter().map(|&v| number(v)).collect(),
+            );
         }
         return;
     }
@@ -177,5 +183,8 @@ fn print(all: bool, columns: &[&str], rows: &[Row]) {
         let values: Vec<f64> = rows.iter().filter_map(|row| row.cells[column]).collect();
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     };
-    line("mean", (0..columns.len()).map(|k| number(mean(k))).collect());
+    line(
+        "mean",
+        (0..columns.len()).map(|k| number(mean(k))).collect(),
+    );
 }

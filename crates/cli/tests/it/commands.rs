@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use crate::common::{moduli, refused, stdout};
+use crate::common::{moduli, npy, read_npy, refused, stdout};
 
 /// An ellipsoid of 1,500 points away from the origin, as ASCII PLY.
 fn ellipsoid_cloud(folder: &Path) -> PathBuf {
@@ -360,25 +360,4 @@ fn bad_usage_is_exit_2() {
     ] {
         refused(&moduli(here, &["quality", "g.npy", flag, value]), 2, &[]);
     }
-}
-
-fn npy(columns: usize, values: &[f64]) -> Vec<u8> {
-    use npyz::WriterBuilder;
-    let mut bytes = Vec::new();
-    let mut writer = npyz::WriteOptions::new()
-        .default_dtype()
-        .shape(&[(values.len() / columns) as u64, columns as u64])
-        .writer(&mut bytes)
-        .begin_nd()
-        .unwrap();
-    writer.extend(values.iter().copied()).unwrap();
-    writer.finish().unwrap();
-    bytes
-}
-
-fn read_npy(path: &Path, columns: u64) -> Vec<f64> {
-    let bytes = std::fs::read(path).unwrap();
-    let file = npyz::NpyFile::new(&bytes[..]).unwrap();
-    assert_eq!(file.shape()[1], columns);
-    file.into_vec::<f64>().unwrap()
 }

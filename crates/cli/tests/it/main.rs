@@ -6,3 +6,4 @@ mod common;
 mod hands;
 mod metrics;
 mod results;
+mod spherical;

@@ -30,8 +30,7 @@ fn all_metrics_stand_in_named_columns() {
         arguments.extend(more);
         stdout(&moduli(folder.path(), &arguments))
     };
-    let line: serde_json::Value =
-        serde_json::from_str(&run(&["--json", "-o", "all.csv"])).unwrap();
+    let line: serde_json::Value = serde_json::from_str(&run(&["--json", "-o", "all.csv"])).unwrap();
     let columns = line["columns"].as_array().unwrap();
     let row = line["rows"][0].as_array().unwrap();
     assert_eq!(columns.len(), row.len());

@@ -50,3 +50,26 @@ pub(crate) fn fitted(folder: &Path, name: &str, axes: [f64; 3], centre: [f64; 3]
         &["fit", &cloud, "--degree", "8", "-o", &shape, "-q"],
     ));
 }
+
+/// A table as the bytes of a `.npy` file.
+pub(crate) fn npy(columns: usize, values: &[f64]) -> Vec<u8> {
+    use npyz::WriterBuilder;
+    let mut bytes = Vec::new();
+    let mut writer = npyz::WriteOptions::new()
+        .default_dtype()
+        .shape(&[(values.len() / columns) as u64, columns as u64])
+        .writer(&mut bytes)
+        .begin_nd()
+        .unwrap();
+    writer.extend(values.iter().copied()).unwrap();
+    writer.finish().unwrap();
+    bytes
+}
+
+/// The numbers of a `.npy` file with so many columns.
+pub(crate) fn read_npy(path: &Path, columns: u64) -> Vec<f64> {
+    let bytes = std::fs::read(path).unwrap();
+    let file = npyz::NpyFile::new(&bytes[..]).unwrap();
+    assert_eq!(file.shape()[1], columns);
+    file.into_vec::<f64>().unwrap()
+}

@@ -1,0 +1,117 @@
+//! `moduli fit --model spherical`, and the commands that read its result.
+
+use std::path::Path;
+
+use tempfile::TempDir;
+
+use crate::common::{moduli, npy, read_npy, refused, stdout};
+
+/// Writes u.npy with 900 directions, and NAME.xyz with their images under `map`.
+fn mapped(folder: &Path, name: &str, map: impl Fn(&sph::Direction) -> [f64; 3]) {
+    let directions = sph::direction::even_directions(900);
+    let flat: Vec<f64> = directions.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
+    std::fs::write(folder.join("u.npy"), npy(3, &flat)).unwrap();
+    let line = |p| {
+        let [x, y, z] = map(p);
+        format!("{x} {y} {z}\n")
+    };
+    let text: String = directions.iter().map(line).collect();
+    std::fs::write(folder.join(format!("{name}.xyz")), text).unwrap();
+}
+
+/// A bent rod that is not star-shaped about its mean.
+fn rod(p: &sph::Direction) -> [f64; 3] {
+    [
+        1.0 + 0.012 * p.x + 0.05 * p.z * p.z,
+        2.0 + 0.012 * p.y,
+        3.0 + 0.07 * p.z,
+    ]
+}
+
+fn fit(folder: &Path, name: &str) -> serde_json::Value {
+    let (cloud, shape) = (format!("{name}.xyz"), format!("{name}.shape"));
+    let arguments = ["fit", &cloud, "--model", "spherical", "--directions"];
+    let more = [
+        "u.npy", "--degree", "4", "--lambda", "0", "-o", &shape, "--json",
+    ];
+    let line = stdout(&moduli(folder, &[&arguments[..], &more[..]].concat()));
+    serde_json::from_str(&line).unwrap()
+}
+
+#[test]
+fn a_bent_rod_is_fitted_evaluated_meshed_and_described() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    mapped(here, "rod", rod);
+    let line = fit(here, "rod");
+    assert_eq!(
+        (&line["model"], &line["embedding"]),
+        (&"spherical".into(), &"immersion".into())
+    );
+    assert_eq!(
+        (&line["points"], &line["in_m_sph"]),
+        (&900.into(), &true.into())
+    );
+    assert!(line["rms_m"].as_f64().unwrap() < 1e-9);
+    assert!(line["area_element_certified_m2"].as_f64().unwrap() > 0.0);
+
+    let arguments = ["eval", "rod.shape", "--directions", "u.npy", "-o", "v.npy"];
+    stdout(&moduli(here, &arguments));
+    let values = read_npy(&here.join("v.npy"), 9);
+    for (row, p) in values.chunks(9).zip(sph::direction::even_directions(900)) {
+        for (found, expected) in row.iter().zip(rod(&p)) {
+            assert!(
+                (found - expected).abs() <= 1e-9,
+                "in the frame of the cloud"
+            );
+        }
+    }
+    stdout(&moduli(here, &["mesh", "rod.shape", "-o", "rod.ply"]));
+    let mesh = shape::io::read_ply(&std::fs::read(here.join("rod.ply")).unwrap()).unwrap();
+    assert!(mesh.points.iter().all(|p| (p.y - 2.0).abs() <= 0.0121));
+    assert!(stdout(&moduli(here, &["info", "rod.shape"])).contains("immersion   proved"));
+    let grasp = moduli(here, &["synthesize", "rod.shape"]);
+    refused(&grasp, 3, &["rod.shape", "radial"]);
+}
+
+#[test]
+fn the_curvatures_of_a_ball_are_one_over_its_radius() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    mapped(here, "ball", |p| [0.04 * p.x, 0.04 * p.y, 0.04 * p.z]);
+    fit(here, "ball");
+    let arguments = ["eval", "ball.shape", "--directions", "u.npy", "-o", "v.npy"];
+    stdout(&moduli(here, &arguments));
+    let values = read_npy(&here.join("v.npy"), 9);
+    for row in values.chunks(9) {
+        assert!(row[6..].iter().all(|k| (k - 25.0).abs() < 1e-3), "{row:?}");
+        let outward: f64 = (0..3).map(|k| row[k] * row[3 + k]).sum();
+        assert!((outward - 0.04).abs() < 1e-9, "the normal points outward");
+    }
+}
+
+#[test]
+fn directions_that_do_not_belong_to_the_cloud_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    mapped(here, "rod", rod);
+    let run = |more: &[&str]| {
+        let mut arguments = vec!["fit", "rod.xyz", "--degree", "4"];
+        arguments.extend(more);
+        moduli(here, &arguments)
+    };
+    refused(&run(&["--model", "spherical"]), 2, &["--directions"]);
+    refused(&run(&["--directions", "u.npy"]), 2, &["--model spherical"]);
+    std::fs::write(here.join("one.npy"), npy(3, &[0.0, 0.0, 1.0])).unwrap();
+    let one = ["--model", "spherical", "--directions", "one.npy"];
+    refused(&run(&one), 2, &["900 points", "1 directions"]);
+    std::fs::write(here.join("long.npy"), npy(3, &[0.0, 0.0, 1.1])).unwrap();
+    let long = ["--model", "spherical", "--directions", "long.npy"];
+    refused(&run(&long), 3, &["long.npy", "row 0", "1.1"]);
+    // A map that folds the sphere flat is no immersion.
+    mapped(here, "flat", |p| [0.04 * p.x, 0.04 * p.y, 0.0]);
+    let flat = ["fit", "flat.xyz", "--degree", "4", "--lambda", "0"];
+    let more = ["--model", "spherical", "--directions", "u.npy"];
+    let flat = moduli(here, &[&flat[..], &more[..]].concat());
+    refused(&flat, 4, &["flat.xyz", "not an immersion"]);
+}

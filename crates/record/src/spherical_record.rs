@@ -1,0 +1,46 @@
+//! A surface over the sphere as it is stored.
+
+use serde::{Deserialize, Serialize};
+
+use crate::envelope::{self, EnvelopeError, Kind};
+
+/// A map of the sphere into space, and where its cloud stood.
+///
+/// The surface is f = (x, y, z) in the centred frame, each coordinate Σ β_{l,m} Y_{l,m}(p) with real
+/// orthonormal harmonics without the Condon–Shortley phase.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SphericalRecord {
+    /// Name of the object or of its cloud.
+    pub name: String,
+    /// β_{l,m} of x, y and z at position l² + l + m, metres; all of one degree.
+    pub coordinates: [Vec<f64>; 3],
+    /// Origin of the centred frame in the frame of the cloud, metres.
+    pub centre_in_cloud_m: [f64; 3],
+    /// Penalty λ of the fit of x, y and z; 0 for a fit without a penalty.
+    pub lambda: [f64; 3],
+    /// Root mean square of the distances |f(pᵢ) − xᵢ|, metres.
+    pub rms_m: f64,
+    /// Number of points fitted.
+    pub points: u64,
+}
+
+impl SphericalRecord {
+    /// The bytes of a file of this shape.
+    ///
+    /// # Errors
+    /// The record cannot be encoded, or is larger than 256 MiB.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, EnvelopeError> {
+        envelope::encode(Kind::Spherical, self)
+    }
+
+    /// Reads the bytes of a file of this shape.
+    ///
+    /// The coefficients are not checked: they may have the wrong number, be NaN, or describe a map
+    /// that is no immersion.
+    ///
+    /// # Errors
+    /// The bytes are not a spherical shape of a version that is read, or are damaged.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, EnvelopeError> {
+        envelope::decode(Kind::Spherical, bytes)
+    }
+}
