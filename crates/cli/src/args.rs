@@ -7,8 +7,8 @@ mod shapes;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 pub(crate) use grasps::{
-    AscendOptions, AscentScheme, LimitOptions, MoveOptions, QualityOptions, TransferOptions,
-    TransferScheme,
+    AscendOptions, AscentScheme, ContactOption, LimitOptions, Metric, MoveOptions, QualityOptions,
+    TransferOptions, TransferScheme,
 };
 pub(crate) use hands::{
     GraspOptions, HandCheckOptions, HandCommand, HandOptions, SynthesizeOptions,
@@ -125,9 +125,10 @@ impl Unit {
 
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ConventionOptions {
-    /// paper, graspit, dexnet, frogger, openrave or unit.
-    #[arg(long, default_value = "paper")]
-    pub(crate) convention: String,
+    /// paper, graspit, dexnet, frogger, openrave or unit [default: paper; for `quality`, the convention
+    /// that the file names].
+    #[arg(long)]
+    pub(crate) convention: Option<String>,
     /// Friction coefficient in place of the convention's.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) friction: Option<f64>,

@@ -33,6 +33,11 @@ pub(crate) fn table(path: &Path, columns: usize) -> Result<Table, Failure> {
     Table::from_npy_with_columns(&read(path)?, columns).map_err(|e| Failure::input(path, e))
 }
 
+/// A table of numbers from a `.npy` file, of as many columns as it has.
+pub(crate) fn any_table(path: &Path) -> Result<Table, Failure> {
+    Table::from_npy(&read(path)?).map_err(|e| Failure::input(path, e))
+}
+
 /// A readable name for what a file holds.
 pub(crate) fn stem(path: &Path) -> String {
     path.file_stem()
@@ -157,8 +162,16 @@ pub(crate) fn grasps(path: &Path) -> Result<GraspsFile, Failure> {
 
 /// The convention that the options name and change.
 pub(crate) fn convention(options: &ConventionOptions) -> Result<Convention, Failure> {
-    let mut convention =
-        Convention::named(&options.convention).map_err(|e| Failure::usage(e.to_string()))?;
+    let name = options.convention.as_deref().unwrap_or("paper");
+    let convention = Convention::named(name).map_err(|e| Failure::usage(e.to_string()))?;
+    changed(convention, options)
+}
+
+/// A convention with the numbers that the options change.
+pub(crate) fn changed(
+    mut convention: Convention,
+    options: &ConventionOptions,
+) -> Result<Convention, Failure> {
     if let Some(friction) = options.friction {
         convention.friction = friction;
     }

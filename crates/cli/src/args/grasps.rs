@@ -3,24 +3,72 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use serde::Serialize;
 
 use super::ConventionOptions;
 
 #[derive(Debug, Args)]
 pub(crate) struct QualityOptions {
-    /// The grasps: a `grasps.json`, or rows of 21 numbers in .npy or .csv (three contact points, their
-    /// inward unit normals, and the point about which torques are taken).
+    /// Grasps: grasps.json, or .npy / .csv with 6m+3 columns for m contacts: the positions, the inward
+    /// normals, the centre (c1 c2 c3 n1 n2 n3 z for three).
     pub(crate) grasps: PathBuf,
     /// Also compute volume, L-infinity, min-weight, least friction, smallest singular value and the
     /// normal force per load, one named column each.
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["metric", "contact", "certificate"])]
     pub(crate) all: bool,
+    /// What is measured. `friction-needed` is the least friction under which a grasp is closed.
+    #[arg(long, value_enum, default_value_t = Metric::Epsilon)]
+    pub(crate) metric: Metric,
+    /// Contact model: `point`, `soft:RADIUS` (a disc under even pressure, with torsion 2/3 μ RADIUS) or
+    /// `patch:RADIUS` (four point contacts on a square pad). RADIUS in metres.
+    #[arg(long, default_value = "point", value_parser = contact_option)]
+    pub(crate) contact: ContactOption,
+    /// The proof of every interval of epsilon quality, as JSON.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) certificate: Option<PathBuf>,
     /// File for the result, one row per grasp: quality, lower and upper bound, or all columns with
     /// `--all`. A name that ends in .csv gives a table with a header, any other one an .npy array.
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) convention: ConventionOptions,
+}
+
+/// What `quality` measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Metric {
+    /// The largest ball in the hull of all wrenches, with a proved interval.
+    Epsilon,
+    /// The same where every contact has a force of its own.
+    Linf,
+    /// The largest least weight of a balance (polygonal cones).
+    MinWeight,
+    /// The least friction coefficient under which the grasp is closed.
+    FrictionNeeded,
+}
+
+/// A contact model and its size in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum ContactOption {
+    Point,
+    Soft(f64),
+    Patch(f64),
+}
+
+fn contact_option(text: &str) -> Result<ContactOption, String> {
+    let radius = |text: &str| {
+        let radius = text.parse::<f64>().ok();
+        radius
+            .filter(|r| r.is_finite() && *r > 0.0)
+            .ok_or_else(|| format!("`{text}` is no radius; expected metres above 0"))
+    };
+    match text.split_once(':') {
+        None if text == "point" => Ok(ContactOption::Point),
+        Some(("soft", size)) => radius(size).map(ContactOption::Soft),
+        Some(("patch", size)) => radius(size).map(ContactOption::Patch),
+        _ => Err("expected `point`, `soft:RADIUS` or `patch:RADIUS`".to_owned()),
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

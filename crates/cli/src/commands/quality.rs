@@ -1,16 +1,21 @@
 //! `moduli quality`: the quality of given grasps, each with an interval that contains it.
 
+mod certificates;
 mod grasps;
 
 use std::path::Path;
 use std::time::Instant;
 
-use grasp::{CentreRule, Convention, Epsilon, Grasp, Workspace};
+use grasp::{
+    CentreRule, ContactModel, Convention, Epsilon, Grasp, GraspModel, TangentRule, Workspace,
+};
 use moduli::Metrics;
+use nalgebra::Vector3;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::args::{Common, QualityOptions};
+use self::certificates::CertificateLine;
+use crate::args::{Common, ContactOption, Metric, QualityOptions};
 use crate::failure::Failure;
 use crate::{input, output};
 
@@ -18,14 +23,19 @@ use crate::{input, output};
 const CHUNK: usize = 256;
 /// Up to this many grasps are printed one by one.
 const FEW: usize = 20;
+/// The largest friction coefficient that `friction-needed` tries.
+const MOST_FRICTION: f64 = 100.0;
 
 #[derive(Serialize)]
 struct QualityLine {
     grasps: usize,
     closed: usize,
+    converged: usize,
     mean: f64,
     best: f64,
+    metric: Metric,
     convention: String,
+    warnings: Vec<String>,
     seconds: f64,
     us_per_grasp: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -37,31 +47,31 @@ struct QualityLine {
 /// One grasp: whether it is force-closed, and its numbers in the order of [`Metrics::COLUMNS`].
 struct Row {
     closed: bool,
+    converged: bool,
     cells: Vec<Option<f64>>,
+    certificate: Option<CertificateLine>,
 }
 
 pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failure> {
-    let mut convention = input::convention(&options.convention)?;
-    // The centre comes with every grasp.
-    convention.centre = CentreRule::Given;
-    let grasps = grasps::read_grasps(&options.grasps)?;
+    let named = input::convention(&options.convention)?;
+    let (grasps, rule) = grasps::read_grasps(&options.grasps)?;
+    let convention = convention(options, named, rule)?;
     let start = Instant::now();
     let path = &options.grasps;
     let rows = if options.all {
         let all = |grasp: &Grasp, _: &mut Workspace| {
             let metrics = Metrics::of(&grasp.contacts, &grasp.centre, &convention)?;
-            Ok(Row {
-                closed: metrics.epsilon.closed,
-                cells: metrics.row(&convention).to_vec(),
-            })
+            let cells = metrics.row(&convention).to_vec();
+            Ok(Row::new(&metrics.epsilon, cells))
         };
         measure(&grasps, path, all)?
     } else {
-        let plain = |grasp: &Grasp, work: &mut Workspace| {
-            let epsilon = grasp::epsilon(&grasp.under(&convention), work)?;
-            Ok(plain_row(&epsilon, &convention))
+        let one = |grasp: &Grasp, work: &mut Workspace| {
+            let models = vec![contact_model(options, &convention); grasp.contacts.len()];
+            let model = grasp.under(&convention).with_contact_models(&models);
+            Ok(measured(&model, options, work)?)
         };
-        measure(&grasps, path, plain)?
+        measure(&grasps, path, one)?
     };
     let seconds = start.elapsed().as_secs_f64();
     let columns = &Metrics::COLUMNS[..rows[0].cells.len()];
@@ -69,7 +79,12 @@ pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failu
         let bytes = table(path, columns, &rows)?;
         output::write_file(path, &bytes)?;
     }
-    let line = summary(&rows, &convention, seconds);
+    if let Some(path) = &options.certificate {
+        let proofs: Vec<_> = rows.iter().map(|row| &row.certificate).collect();
+        output::write_file(path, &output::encode(&proofs)?)?;
+    }
+    let line = summary(&rows, options.metric, &convention, seconds);
+    line.warnings.iter().for_each(output::warn);
     if common.json {
         return output::say_json(&QualityLine {
             columns: options.all.then_some(columns),
@@ -87,11 +102,87 @@ pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failu
     Ok(())
 }
 
-fn plain_row(epsilon: &Epsilon, convention: &Convention) -> Row {
-    let cells = [epsilon.value(convention), epsilon.lower, epsilon.upper];
-    Row {
-        closed: epsilon.closed,
-        cells: cells.map(Some).to_vec(),
+/// The convention of the options, or of the file where the options name none.
+fn convention(
+    options: &QualityOptions,
+    named: Convention,
+    file: Option<Convention>,
+) -> Result<Convention, Failure> {
+    let said = &options.convention;
+    let mut convention = match (file, &said.convention) {
+        (Some(rule), None) => input::changed(rule, said)?,
+        _ => named,
+    };
+    // FRoGGeR's own frames. With another torque length the number is no system's own, and frames are
+    // those of every convention.
+    if said.convention.as_deref() == Some("frogger") && said.torque_length.is_none() {
+        convention.tangent = TangentRule::Projected(Vector3::new(1.2, 2.3, 3.4));
+    }
+    // The centre comes with every grasp.
+    convention.centre = CentreRule::Given;
+    Ok(convention)
+}
+
+fn contact_model(options: &QualityOptions, convention: &Convention) -> ContactModel {
+    let friction = convention.friction;
+    match options.contact {
+        ContactOption::Point => ContactModel::Point { friction },
+        ContactOption::Soft(radius) => ContactModel::soft_disc(friction, radius),
+        ContactOption::Patch(radius) => ContactModel::Patch { friction, radius },
+    }
+}
+
+/// One grasp's number and the interval that holds it.
+fn measured(
+    model: &GraspModel<'_>,
+    options: &QualityOptions,
+    work: &mut Workspace,
+) -> Result<Row, grasp::QualityError> {
+    let (found, certificate) = match (options.metric, &options.certificate) {
+        (Metric::Epsilon, Some(_)) => {
+            let (found, proof) = grasp::epsilon_with_certificate(model, work)?;
+            let line = CertificateLine::new(&found, &proof);
+            (found, Some(line))
+        }
+        (Metric::Linf, _) => (grasp::epsilon_linf(model, work)?, None),
+        _ => (grasp::epsilon(model, work)?, None),
+    };
+    let exact = match options.metric {
+        Metric::Epsilon | Metric::Linf => {
+            let ends = [found.value(model.convention), found.lower, found.upper];
+            let row = Row::new(&found, ends.map(Some).to_vec());
+            return Ok(Row { certificate, ..row });
+        }
+        Metric::MinWeight => grasp::min_weight(model)?,
+        Metric::FrictionNeeded => grasp::friction_needed(model, MOST_FRICTION, work)?.closure,
+    };
+    let row = Row::new(&found, vec![exact; 3]);
+    Ok(Row {
+        converged: true,
+        ..row
+    })
+}
+
+impl Row {
+    fn new(found: &Epsilon, cells: Vec<Option<f64>>) -> Self {
+        Row {
+            closed: found.closed,
+            converged: found.converged,
+            cells,
+            certificate: None,
+        }
+    }
+}
+
+fn warnings(rows: &[Row]) -> Vec<String> {
+    let wide = rows.iter().filter(|row| !row.converged).count();
+    match rows.iter().position(|row| !row.converged) {
+        Some(first) => vec![format!(
+            "{wide} of {} intervals are wider than asked for (the first is grasp {first}); \
+             their quality is the proved lower end",
+            rows.len()
+        )],
+        None => Vec::new(),
     }
 }
 
@@ -118,15 +209,18 @@ fn measure(
     Ok(chunks.into_iter().flatten().collect())
 }
 
-fn summary(rows: &[Row], convention: &Convention, seconds: f64) -> QualityLine {
+fn summary(rows: &[Row], metric: Metric, convention: &Convention, seconds: f64) -> QualityLine {
     let qualities = || rows.iter().filter_map(|row| row.cells[0]);
     let count = rows.len() as f64;
     QualityLine {
         grasps: rows.len(),
         closed: rows.iter().filter(|row| row.closed).count(),
-        mean: qualities().sum::<f64>() / count,
+        converged: rows.iter().filter(|row| row.converged).count(),
+        mean: qualities().sum::<f64>() / qualities().count().max(1) as f64,
         best: qualities().fold(f64::NEG_INFINITY, f64::max),
+        metric,
         convention: convention.name.clone(),
+        warnings: warnings(rows),
         seconds,
         us_per_grasp: 1e6 * seconds / count,
         columns: None,
@@ -157,7 +251,8 @@ fn print(all: bool, columns: &[&str], rows: &[Row]) {
         if rows.len() <= FEW {
             for (i, row) in rows.iter().enumerate() {
                 let [q, lower, upper] = [0, 1, 2].map(|k| row.cells[k].unwrap_or(f64::NAN));
-                output::say(format!("{i:5}  {q:10.6}  [{lower:.6}, {upper:.6}]"));
+                let mark = if row.converged { "" } else { "  not converged" };
+                output::say(format!("{i:5}  {q:10.6}  [{lower:.6}, {upper:.6}]{mark}"));
             }
         }
         return;

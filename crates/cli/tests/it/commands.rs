@@ -256,7 +256,7 @@ fn bad_input_names_the_file_and_the_place() {
         &["row 0", "column 4", "NaN"],
     );
     std::fs::write(here.join("narrow.npy"), npy(3, &[1.0; 3])).unwrap();
-    refused(&moduli(here, &["quality", "narrow.npy"]), 3, &["N×21"]);
+    refused(&moduli(here, &["quality", "narrow.npy"]), 3, &["6m+3"]);
     std::fs::write(here.join("short.csv"), "1,2,3\n").unwrap();
     refused(
         &moduli(here, &["quality", "short.csv"]),

@@ -5,5 +5,6 @@ mod commands;
 mod common;
 mod hands;
 mod metrics;
+mod quality;
 mod results;
 mod spherical;

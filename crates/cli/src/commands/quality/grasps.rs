@@ -1,22 +1,24 @@
-//! Grasps as the user gives them: `grasps.json`, or rows of numbers.
+//! Grasps from .json, .npy and .csv files.
 
 use std::path::Path;
 
-use grasp::{Contact, Grasp};
+use grasp::{Contact, Convention, Grasp};
 use nalgebra::{Point3, UnitVector3, Vector3};
 
 use crate::failure::Failure;
 use crate::input;
 
-/// The numbers of one grasp: c1 c2 c3 n1 n2 n3 z, each a vector.
-const COLUMNS: usize = 21;
+/// Normals whose length is within this of one are normalised.
+const NEARLY_UNIT: f64 = 0.01;
 
-/// The grasps of a file, at least one; the ending of its name decides how it is read.
-pub(super) fn read_grasps(path: &Path) -> Result<Vec<Grasp>, Failure> {
+/// The grasps of a file, and the convention that it names if it names one.
+pub(super) fn read_grasps(path: &Path) -> Result<(Vec<Grasp>, Option<Convention>), Failure> {
+    let mut rule = None;
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
     let grasps = match extension {
         "npy" => {
-            let table = input::table(path, COLUMNS)?;
+            let table = input::any_table(path)?;
+            contacts_in(path, "the table", table.columns())?;
             table
                 .rows()
                 .enumerate()
@@ -24,21 +26,48 @@ pub(super) fn read_grasps(path: &Path) -> Result<Vec<Grasp>, Failure> {
                 .collect::<Result<Vec<_>, _>>()?
         }
         "csv" => read_csv(path)?,
-        "json" => read_json(path)?,
+        "json" => {
+            let (grasps, convention) = read_json(path)?;
+            rule = Some(convention);
+            grasps
+        }
         _ => {
             return Err(Failure::input(
                 path,
-                "expected a file of grasps whose name ends in .json, .npy or .csv",
+                "expected grasps in a .json, .npy or .csv file",
             ));
         }
     };
     if grasps.is_empty() {
-        return Err(Failure::input(path, "there are no grasps in the file"));
+        return Err(Failure::input(path, "holds no grasps"));
     }
-    Ok(grasps)
+    Ok((grasps, rule))
 }
 
-/// A grasp from 21 numbers; `row` names it in errors.
+/// The contacts of a row of 6m+3 numbers: m positions, m inward normals and the centre.
+fn contacts_in(path: &Path, place: &str, columns: usize) -> Result<usize, Failure> {
+    if columns >= 15 && columns % 6 == 3 {
+        return Ok((columns - 3) / 6);
+    }
+    Err(Failure::input(
+        path,
+        format!(
+            "{place} has {columns} columns; expected 6m+3 for m contacts, two or more: \
+             positions, inward normals, centre (21 for three contacts)"
+        ),
+    ))
+}
+
+/// A normal that is unit up to one per cent, made unit.
+fn unit_normal(normal: Vector3<f64>) -> UnitVector3<f64> {
+    if (normal.norm() - 1.0).abs() <= NEARLY_UNIT {
+        UnitVector3::new_normalize(normal)
+    } else {
+        UnitVector3::new_unchecked(normal)
+    }
+}
+
+/// A grasp from a row of numbers; `row` names it in errors.
 fn from_row(path: &Path, row: usize, cells: &[f64]) -> Result<Grasp, Failure> {
     if let Some(column) = cells.iter().position(|v| !v.is_finite()) {
         return Err(Failure::input(
@@ -50,17 +79,18 @@ fn from_row(path: &Path, row: usize, cells: &[f64]) -> Result<Grasp, Failure> {
         ));
     }
     let triple = |k: usize| Vector3::new(cells[3 * k], cells[3 * k + 1], cells[3 * k + 2]);
-    let contacts = (0..3)
+    let count = contacts_in(path, &format!("row {row}"), cells.len())?;
+    let contacts = (0..count)
         .map(|k| Contact {
             position: Point3::from(triple(k)),
-            inward_normal: UnitVector3::new_unchecked(triple(k + 3)),
+            inward_normal: unit_normal(triple(k + count)),
         })
         .collect();
-    Grasp::new(contacts, Point3::from(triple(6)))
+    Grasp::new(contacts, Point3::from(triple(2 * count)))
         .map_err(|e| Failure::input(path, format!("row {row}: {e}")))
 }
 
-/// Comma-separated rows; a first row without any number is a header.
+/// Comma separated rows; a first row of words is a header.
 fn read_csv(path: &Path) -> Result<Vec<Grasp>, Failure> {
     let text = String::from_utf8(input::read(path)?)
         .map_err(|_| Failure::input(path, "not a text file"))?;
@@ -72,12 +102,7 @@ fn read_csv(path: &Path) -> Result<Vec<Grasp>, Failure> {
             continue;
         }
         let place = format!("line {}", number + 1);
-        if cells.len() != COLUMNS {
-            return Err(Failure::input(
-                path,
-                format!("{place} has {} columns; expected {COLUMNS}", cells.len()),
-            ));
-        }
+        contacts_in(path, &place, cells.len())?;
         let parse = |(column, cell): (usize, &&str)| {
             cell.parse::<f64>().map_err(|_| {
                 Failure::input(
@@ -96,10 +121,13 @@ fn read_csv(path: &Path) -> Result<Vec<Grasp>, Failure> {
     Ok(grasps)
 }
 
-/// A `grasps.json`; torques are taken about the mean of the object's cloud.
-fn read_json(path: &Path) -> Result<Vec<Grasp>, Failure> {
+/// Our own grasps.json with its convention; torques are taken about the object's centre.
+fn read_json(path: &Path) -> Result<(Vec<Grasp>, Convention), Failure> {
     let file = input::grasps(path)?;
-    file.grasps
+    let convention = moduli::records::convention(&file.convention)
+        .map_err(|e| Failure::input(path, format!("convention `{}`: {e}", file.convention.name)))?;
+    let grasps = file
+        .grasps
         .iter()
         .enumerate()
         .map(|(i, g)| {
@@ -109,11 +137,12 @@ fn read_json(path: &Path) -> Result<Vec<Grasp>, Failure> {
                 .zip(&g.inward_normals)
                 .map(|(c, n)| Contact {
                     position: Point3::from(*c),
-                    inward_normal: UnitVector3::new_unchecked(Vector3::from(*n)),
+                    inward_normal: unit_normal(Vector3::from(*n)),
                 })
                 .collect();
             Grasp::new(contacts, Point3::from(file.object.centre_m))
                 .map_err(|e| Failure::input(path, format!("grasp {i}: {e}")))
         })
-        .collect()
+        .collect::<Result<_, _>>()?;
+    Ok((grasps, convention))
 }
