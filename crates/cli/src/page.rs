@@ -2,10 +2,10 @@
 
 use hand::{Hand, hand_meshes};
 use moduli::{Grasp, Measure};
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
 use record::GraspsFile;
 use record::grasps::{ConventionRecord, EdgesRecord, JointRecord, JointUnit, SourceRecord};
-use report::{GraspPage, Mesh, PageGrasp, grasp_page};
+use report::{GraspPage, Mesh, PageGrasp, WeakestWrench, grasp_page};
 use shape::{PointCloud, TriangleMesh};
 
 use crate::failure::Failure;
@@ -33,6 +33,13 @@ pub(crate) fn render(
         PageGrasp {
             label: String::new(),
             quality: record.quality,
+            lower: grasp.lower(),
+            distances_to_cloud: cloud.map_or_else(Vec::new, |cloud| {
+                let distance = |c: &[f64; 3]| nearest(cloud, c);
+                record.contacts_m.iter().map(distance).collect()
+            }),
+            weakest: weakest(measure, grasp),
+            pose: pose_text(record),
             source: source_label(&record.source),
             contacts: record.contacts_m.clone(),
             inward_normals: record.inward_normals.clone(),
@@ -60,6 +67,29 @@ pub(crate) fn render(
         grasps: grasps.collect(),
     };
     grasp_page(&page).map_err(|e| Failure::other(format!("cannot draw the page: {e}")))
+}
+
+/// Distance of a point from the nearest point of the cloud, metres.
+pub(crate) fn nearest(cloud: &PointCloud, point: &[f64; 3]) -> f64 {
+    let point = Point3::from(*point);
+    let squares = cloud.points().iter().map(|p| (p - point).norm_squared());
+    squares.fold(f64::INFINITY, f64::min).sqrt()
+}
+
+/// The unit wrench that the grasp resists least.
+fn weakest(measure: &Measure, grasp: &Grasp) -> Option<WeakestWrench> {
+    let wrench = measure.epsilon(grasp.contacts()).ok()?.direction;
+    Some(WeakestWrench {
+        force: [wrench[0], wrench[1], wrench[2]],
+        torque: [wrench[3], wrench[4], wrench[5]],
+    })
+}
+
+/// The hand of a grasp as JSON to copy; empty without one.
+fn pose_text(record: &record::GraspRecord) -> String {
+    let hand = record.hand.as_ref();
+    hand.and_then(|hand| serde_json::to_string(hand).ok())
+        .unwrap_or_default()
 }
 
 /// All pieces of a hand's collision model; `None` for joint values of the wrong number.

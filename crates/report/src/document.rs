@@ -1,10 +1,11 @@
-//! The frame of every page: head, policy, style, plotly.js, data, script.
+//! The frame of every page: head, policy, style, data, plotly.js, script.
 
-use plotly::Plot;
-
+use crate::packed;
 use crate::text;
 
 const STYLE: &str = include_str!("assets/page.css");
+/// Unpacks plotly.js and the data; dark or light; a sentence where the browser cannot.
+const START: &str = include_str!("assets/start.js");
 
 /// Nothing may be fetched from anywhere: a browser that honours this cannot even try.
 /// Inline code is all there is; `unsafe-eval` since plotly.js compiles some of its own.
@@ -13,15 +14,15 @@ const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eva
 
 /// Scripts of a page, run in this order after its body.
 pub(crate) struct Scripts<'a> {
-    /// JSON by element id, readable through `textContent`.
+    /// JSON by element id; the script reads it by `data(id)`.
     pub(crate) data: Vec<(String, String)>,
-    /// Our own script.
+    /// Our own script, run once plotly.js and the data are unpacked.
     pub(crate) code: &'a str,
 }
 
 /// Assembles a page; `body` is HTML, `title` is plain text.
 ///
-/// plotly.js is embedded once, and not at all without scripts.
+/// plotly.js is embedded once, compressed, and not at all without scripts.
 pub(crate) fn document(title: &str, body: &str, scripts: Option<Scripts<'_>>) -> String {
     let mut out = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -33,42 +34,26 @@ pub(crate) fn document(title: &str, body: &str, scripts: Option<Scripts<'_>>) ->
     if let Some(scripts) = scripts {
         for (id, json) in &scripts.data {
             out += &format!(
-                "<script type=\"application/json\" id=\"{}\">{}</script>\n",
+                "<script type=\"text/plain\" class=\"packed\" id=\"{}\">{}</script>\n",
                 text::html(id),
-                text::json_in_script(json)
+                packed::deflated(json)
             );
         }
-        out += "<script>";
-        out += plotly_js(&Plot::offline_js_sources());
+        out += "<script type=\"text/plain\" id=\"plotly-js\">";
+        out += packed::PLOTLY;
         out += "</script>\n<script>\n";
+        out += START;
+        out += "start(function (data) {\n";
         out += scripts.code;
-        out += "</script>\n";
+        out += "});\n</script>\n";
     }
     out += "</body>\n</html>\n";
     out
 }
 
-/// The source of plotly.js among the embedded scripts.
-///
-/// It is the first of them; the formula renderer that follows is a third of the size, and
-/// no page here has formulas.
-fn plotly_js(sources: &str) -> &str {
-    let start = sources.find('>').map_or(0, |tag_end| tag_end + 1);
-    let end = sources.find("</script>").unwrap_or(sources.len());
-    &sources[start..end]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_first_embedded_script_is_plotly() {
-        let sources = Plot::offline_js_sources();
-        let js = plotly_js(&sources);
-        assert!(js.trim_start().starts_with("/**\n* plotly.js v3"));
-        assert!(js.len() > 4_000_000 && js.len() < 5_000_000);
-    }
 
     #[test]
     fn a_page_without_scripts_is_small() {

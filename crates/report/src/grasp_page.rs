@@ -1,64 +1,29 @@
 //! The page of one object and its ranked grasps.
 
-use crate::check;
 use crate::document::{Scripts, document};
 use crate::error::ReportError;
 use crate::grasp_view;
-use crate::mesh::Mesh;
+use crate::page_grasp::{GraspPage, PageGrasp};
 use crate::rounding;
 use crate::text;
+use crate::theme;
 
 const SCRIPT: &str = include_str!("assets/grasp_page.js");
-
-/// What the page of one object shows. All points are in one frame, in metres.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct GraspPage {
-    /// Name of the object: title and heading.
-    pub title: String,
-    /// Lines under the heading: size, certified radius bounds, convention, time.
-    pub subtitle_lines: Vec<String>,
-    /// The surface of the object.
-    pub mesh: Mesh,
-    /// The measured cloud (n × 3); at most 4,000 of its points are drawn. May be empty.
-    pub cloud: Vec<[f64; 3]>,
-    /// Coefficient of friction μ ≥ 0: friction cones of half angle atan μ; 0 draws none.
-    pub friction: f64,
-    /// The grasps, best first: rank 1 is entry 0. May be empty.
-    pub grasps: Vec<PageGrasp>,
-}
-
-/// One grasp on a [`GraspPage`].
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct PageGrasp {
-    /// A short name; may be empty.
-    pub label: String,
-    /// The quality by which the grasps are ranked.
-    pub quality: f64,
-    /// Where the grasp comes from, as in `"transfer from S5"` or `"synthesis"`.
-    pub source: String,
-    /// Contact points (m × 3), metres.
-    pub contacts: Vec<[f64; 3]>,
-    /// Inward normals at the contacts (m × 3), of any length above zero.
-    pub inward_normals: Vec<[f64; 3]>,
-    /// Further facts as name and value, as in joint angles of a hand.
-    pub details: Vec<(String, String)>,
-    /// The hand around the object, metres. Worth giving for the best few.
-    pub hand: Option<Mesh>,
-}
 
 /// The page as self-contained HTML: a view that turns, a selector, a table of the grasps.
 ///
 /// The arrows stand outside the object and press along the inward normals; the friction
 /// cones open outwards from the contacts. Coordinates are shown in millimetres, rounded to
-/// 0.01 mm. Adding `#3` to the address of the page opens it at the grasp of rank 3. Size
-/// is that of plotly.js (4.6 MB) and about 0.7 MB for a mesh of 10,000 vertices.
+/// 0.01 mm. Adding `#3` to the address of the page opens it at the grasp of rank 3; the arrow keys
+/// go to the previous and the next. Size is that of plotly.js, compressed (1.9 MB), and about 0.3 MB
+/// for a mesh of 10,000 vertices.
 ///
 /// # Errors
 /// [`ReportError`] names the part and entry of the first number that is not finite, of a
 /// triangle without its vertex, of an empty mesh, of a normal without length, or of
 /// contacts and normals that differ in number.
 pub fn grasp_page(page: &GraspPage) -> Result<String, ReportError> {
-    check_page(page)?;
+    page.check()?;
     let mut body = String::from("<main class=\"grasps\">\n<header>\n");
     body += &format!("<h1>{}</h1>\n", text::html(&page.title));
     for line in &page.subtitle_lines {
@@ -75,43 +40,6 @@ pub fn grasp_page(page: &GraspPage) -> Result<String, ReportError> {
     Ok(document(&page.title, &body, Some(scripts)))
 }
 
-fn check_page(page: &GraspPage) -> Result<(), ReportError> {
-    page.mesh.check("mesh")?;
-    check::finite_points("cloud", &page.cloud)?;
-    if !(page.friction.is_finite() && page.friction >= 0.0) {
-        return Err(ReportError::OutOfRange {
-            place: "friction".to_owned(),
-            value: page.friction,
-            expected: "a finite number, at least 0",
-        });
-    }
-    for (index, grasp) in page.grasps.iter().enumerate() {
-        grasp.check(&format!("grasp {index}"))?;
-    }
-    Ok(())
-}
-
-impl PageGrasp {
-    fn check(&self, place: &str) -> Result<(), ReportError> {
-        check::finite(&format!("{place}: quality"), &[self.quality])?;
-        check::finite_points(&format!("{place}: contacts"), &self.contacts)?;
-        let normals = format!("{place}: normals");
-        check::same_length(&normals, self.contacts.len(), self.inward_normals.len())?;
-        check::finite_points(&normals, &self.inward_normals)?;
-        if self.inward_normals.contains(&[0.0; 3]) {
-            return Err(ReportError::OutOfRange {
-                place: normals,
-                value: 0.0,
-                expected: "a length above zero",
-            });
-        }
-        match &self.hand {
-            None => Ok(()),
-            Some(hand) => hand.check(&format!("{place}: hand")),
-        }
-    }
-}
-
 /// Controls and view on the left, with the facts of the selected grasp below.
 fn view_html(page: &GraspPage) -> String {
     let mut out = String::from("<div class=\"left\">\n");
@@ -124,8 +52,25 @@ fn view_html(page: &GraspPage) -> String {
         if page.friction > 0.0 {
             out += "Cones: friction. ";
         }
+        if page.grasps.iter().any(|g| !g.distances_to_cloud.is_empty()) {
+            let [near, middle, far] = theme::DISTANCE;
+            out += &format!(
+                "Contacts by distance from the scan: {} up to 1 mm, {} up to 3 mm, {} farther. ",
+                dot(near),
+                dot(middle),
+                dot(far)
+            );
+        }
+        if page.grasps.iter().any(|g| g.weakest.is_some()) {
+            out += &format!(
+                "Weakest wrench: {} force, {} torque. ",
+                dot(theme::FORCE),
+                dot(theme::TORQUE)
+            );
+        }
     }
-    out += "Drag to turn, scroll to zoom. Axes in millimetres.</p>\n";
+    out +=
+        "Drag to turn, scroll to zoom, arrow keys for the next grasp. Axes in millimetres.</p>\n";
     for (index, grasp) in page.grasps.iter().enumerate() {
         out += &details_html(index, grasp);
     }
@@ -159,6 +104,10 @@ fn controls_html(page: &GraspPage) -> String {
     }
     if page.grasps.iter().any(|g| g.hand.is_some()) {
         switches.push(("hand", "hand", true));
+        switches.push(("handglass", "hand see through", false));
+    }
+    if page.grasps.iter().any(|g| g.weakest.is_some()) {
+        switches.push(("wrench", "weakest wrench", false));
     }
     out += "<span class=\"group\">";
     for (id, label, on) in switches {
@@ -186,7 +135,15 @@ fn details_html(index: usize, grasp: &PageGrasp) -> String {
         out += &format!("<div><dt>{name}</dt><dd>{value}</dd></div>\n");
     };
     fact("quality", &quality_text(grasp.quality));
+    fact("proved lower bound", &quality_text(grasp.lower));
     fact("source", &grasp.source);
+    if let Some(weakest) = &grasp.weakest {
+        fact("weakest wrench: force", &vector_text(weakest.force));
+        fact("weakest wrench: torque", &vector_text(weakest.torque));
+    }
+    for (k, &contact) in grasp.contacts.iter().enumerate() {
+        fact(&format!("contact {} / mm", k + 1), &point_text(contact));
+    }
     for (k, normal) in grasp.inward_normals.iter().enumerate() {
         let length = normal.iter().map(|v| v * v).sum::<f64>().sqrt();
         let unit = normal.map(|v| format!("{:.3}", v / length + 0.0));
@@ -195,8 +152,26 @@ fn details_html(index: usize, grasp: &PageGrasp) -> String {
     for (name, value) in &grasp.details {
         fact(name, value);
     }
-    out += "</dl>\n</div>\n";
+    out += "</dl>\n";
+    if !grasp.pose.is_empty() {
+        out += &format!(
+            "<p><button type=\"button\" class=\"copy\" data-text=\"{}\">copy the pose</button></p>\n",
+            text::html(&grasp.pose)
+        );
+    }
+    out += "</div>\n";
     out
+}
+
+/// A dot of the colour of a mark in the view.
+fn dot(colour: &str) -> String {
+    format!("<span class=\"dot\" style=\"background:{colour}\"></span>")
+}
+
+/// Three components with three decimals.
+fn vector_text(v: [f64; 3]) -> String {
+    v.map(|x| format!("{:.3}", rounding::decimals(x, 3)))
+        .join(", ")
 }
 
 /// The table of all grasps on the right.
@@ -207,8 +182,9 @@ fn list_html(page: &GraspPage) -> String {
     }
     out += "<div class=\"scroll tall\"><table id=\"grasps\">\n<thead><tr>\
             <th scope=\"col\">Rank</th><th scope=\"col\" class=\"num\">Quality</th>\
-            <th scope=\"col\">Source</th>\
-            <th scope=\"col\" class=\"num\">Contacts x, y, z / mm</th></tr></thead>\n<tbody>\n";
+            <th scope=\"col\" class=\"num\">Lower</th>\
+            <th scope=\"col\" class=\"num\">To scan / mm</th><th scope=\"col\">Hand</th>\
+            <th scope=\"col\">Source</th></tr></thead>\n<tbody>\n";
     for (index, grasp) in page.grasps.iter().enumerate() {
         out += &row_html(index, grasp);
     }
@@ -222,14 +198,23 @@ fn row_html(index: usize, grasp: &PageGrasp) -> String {
     if !grasp.label.is_empty() {
         source += &format!("<br><small>{}</small>", text::html(&grasp.label));
     }
-    let contacts: Vec<String> = grasp.contacts.iter().map(|&c| point_text(c)).collect();
+    let farthest = grasp.distances_to_cloud.iter().copied().reduce(f64::max);
+    let to_scan = farthest.map_or("–".to_owned(), |d| {
+        format!("{:.1}", rounding::decimals(1e3 * d, 1))
+    });
+    let hand = if grasp.hand.is_some() || !grasp.pose.is_empty() {
+        "yes"
+    } else {
+        "no"
+    };
     let current = if index == 0 { " class=\"current\"" } else { "" };
     format!(
         "<tr data-index=\"{index}\"{current}><td><button type=\"button\" \
          aria-label=\"show grasp {rank}\">{rank}</button></td>\
-         <td class=\"num\">{}</td><td>{source}</td><td class=\"num\">{}</td></tr>\n",
+         <td class=\"num\">{}</td><td class=\"num\">{}</td><td class=\"num\">{to_scan}</td>\
+         <td>{hand}</td><td>{source}</td></tr>\n",
         quality_text(grasp.quality),
-        contacts.join("<br>")
+        quality_text(grasp.lower),
     )
 }
 

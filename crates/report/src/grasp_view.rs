@@ -9,8 +9,9 @@ use plotly::plot::Traces;
 use plotly::{Plot, Trace};
 
 use crate::glyph;
-use crate::grasp_page::{GraspPage, PageGrasp};
 use crate::mesh::{Extent, Mesh};
+use crate::packed;
+use crate::page_grasp::{GraspPage, PageGrasp};
 use crate::rounding::{millimetres, point_millimetres};
 use crate::theme;
 use crate::trace;
@@ -35,17 +36,16 @@ pub(crate) fn json(page: &GraspPage) -> String {
     let grasps: Vec<String> = page
         .grasps
         .iter()
-        .map(|grasp| grasp_traces(grasp, page.friction, object.diagonal()).to_json())
+        .map(|grasp| grasp_traces(grasp, page.friction, object).to_json())
         .collect();
-    trace::with_light(
-        &format!(
-            "{{\"plot\":{},\"grasps\":[{}],\"cameras\":[{}]}}",
-            fixed_plot(page, &view(bounds, object, page.grasps.first())).to_json(),
-            grasps.join(",\n"),
-            cameras.join(",\n")
-        ),
-        false,
-    )
+    let mut value = packed::figure_value(&format!(
+        "{{\"plot\":{},\"grasps\":[{}],\"cameras\":[{}]}}",
+        fixed_plot(page, &view(bounds, object, page.grasps.first())).to_json(),
+        grasps.join(",\n"),
+        cameras.join(",\n")
+    ));
+    packed::prepare(&mut value, false);
+    value.to_string()
 }
 
 /// Room for everything that is ever shown.
@@ -120,7 +120,8 @@ fn fixed_plot(page: &GraspPage, view: &View) -> Plot {
 }
 
 /// Contacts with their numbers, arrows, cones and hand of one grasp.
-fn grasp_traces(grasp: &PageGrasp, friction: f64, diagonal_mm: f64) -> Traces {
+fn grasp_traces(grasp: &PageGrasp, friction: f64, object: Extent) -> Traces {
+    let diagonal_mm = object.diagonal();
     let contacts = in_millimetres(&grasp.contacts);
     let mut traces = Traces::new();
     let arrow_length = ARROW * diagonal_mm;
@@ -135,7 +136,7 @@ fn grasp_traces(grasp: &PageGrasp, friction: f64, diagonal_mm: f64) -> Traces {
     }
     if !contacts.is_empty() {
         traces.push(solid(&arrows, theme::CONTACT, "grasp"));
-        traces.push(contact_markers(&contacts));
+        traces.push(contact_markers(&contacts, &grasp.distances_to_cloud));
         let numbers = (1..=contacts.len()).map(|k| k.to_string()).collect();
         traces.push(
             trace::text(&rounded(&label_positions(grasp, diagonal_mm)), numbers)
@@ -149,6 +150,16 @@ fn grasp_traces(grasp: &PageGrasp, friction: f64, diagonal_mm: f64) -> Traces {
                     .opacity(0.28)
                     .meta("cones"),
             );
+        }
+    }
+    if let Some(weakest) = &grasp.weakest {
+        for (axis, colour) in [
+            (weakest.force, theme::FORCE),
+            (weakest.torque, theme::TORQUE),
+        ] {
+            if let Some(arrow) = wrench_arrow(axis, colour, object) {
+                traces.push(arrow);
+            }
         }
     }
     if let Some(hand) = &grasp.hand {
@@ -181,12 +192,33 @@ fn label_positions(grasp: &PageGrasp, diagonal_mm: f64) -> Vec<[f64; 3]> {
         .collect()
 }
 
-fn contact_markers(contacts_mm: &[[f64; 3]]) -> Box<dyn Trace> {
+/// A part of the weakest wrench, from the middle of the object; its length is its share of the wrench.
+fn wrench_arrow(part: [f64; 3], colour: &'static str, object: Extent) -> Option<Box<dyn Trace>> {
+    let share = glyph::norm(part);
+    if share < 0.05 {
+        return None;
+    }
+    let tail = object.centre();
+    let length = 0.7 * object.diagonal();
+    let tip = glyph::add(tail, glyph::scale(part, length));
+    let arrow = glyph::arrow(tail, tip, 0.012 * object.diagonal());
+    Some(solid(&arrow, colour, "wrench"))
+}
+
+/// Contacts, coloured by their distance from the scan.
+fn contact_markers(contacts_mm: &[[f64; 3]], distances: &[f64]) -> Box<dyn Trace> {
+    let distance = |k: usize| distances.get(k).copied();
     let texts = contacts_mm.iter().enumerate().map(|(k, c)| {
         let [x, y, z] = c.map(|v| format!("{v:.1}"));
-        format!("contact {}: {x}, {y}, {z} mm", k + 1)
+        let from_scan = distance(k).map_or(String::new(), |d| {
+            format!(", {:.1} mm from the scan", 1e3 * d)
+        });
+        format!("contact {}: {x}, {y}, {z} mm{from_scan}", k + 1)
     });
-    trace::points(contacts_mm, theme::CONTACT, 7)
+    let colours = (0..contacts_mm.len())
+        .map(|k| distance(k).map_or(theme::CONTACT, theme::distance_colour))
+        .collect();
+    trace::points_of(contacts_mm, colours, 9)
         .hover_text_array(texts.collect())
         .hover_info(HoverInfo::Text)
         .meta("grasp")

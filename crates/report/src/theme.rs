@@ -26,6 +26,18 @@ pub(crate) const CONE: &str = "#e69f00";
 pub(crate) const HAND: &str = "#4a5f7a";
 /// The cloud of measured points.
 pub(crate) const CLOUD: &str = "#2b6f9e";
+/// The force of the weakest wrench.
+pub(crate) const FORCE: &str = "#cc79a7";
+/// The torque of the weakest wrench.
+pub(crate) const TORQUE: &str = "#56b4e9";
+/// Colours of contacts by their distance from the scan: up to 1 mm, up to 3 mm, farther.
+pub(crate) const DISTANCE: [&str; 3] = ["#009e73", "#e69f00", "#d55e00"];
+
+/// The colour of a contact at a distance from the scan, metres.
+pub(crate) fn distance_colour(distance: f64) -> &'static str {
+    DISTANCE[usize::from(distance > 1e-3) + usize::from(distance > 3e-3)]
+}
+
 /// Fully transparent.
 pub(crate) const CLEAR: &str = "rgba(0,0,0,0)";
 

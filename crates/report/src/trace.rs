@@ -1,7 +1,7 @@
 //! The three kinds of thing that a 3-D view draws: meshes, points, lines.
 
 use plotly::common::{HoverInfo, Line, Marker, MarkerSymbol, Mode};
-use plotly::traces::mesh3d::{LightPosition, Lighting};
+use plotly::traces::mesh3d::Lighting;
 use plotly::{Mesh3D, Scatter3D};
 
 /// A mesh whose coordinates are all numbers.
@@ -26,7 +26,6 @@ pub(crate) fn mesh(
         .color(colour)
         .flat_shading(false)
         .lighting(semi_matte())
-        .light_position(light_placeholder())
         .hover_info(HoverInfo::Skip)
         .show_legend(false)
 }
@@ -45,30 +44,6 @@ fn semi_matte() -> Lighting {
         .vertex_normals_epsilon(1e-24)
 }
 
-/// Stands in every mesh until [`with_light`] knows the projection.
-fn light_placeholder() -> LightPosition {
-    LightPosition::new().x(vec![0.0]).y(vec![0.0]).z(vec![0.0])
-}
-
-/// Sets the light of all meshes in the JSON of a figure: over the viewer's left shoulder,
-/// whichever way the object is turned.
-///
-/// plotly.js reads the position in coordinates of the screen: right, up, and depth with −1
-/// at the near plane, so one place in space has other numbers in a `flat` (parallel) view.
-/// The plotly crate writes each coordinate as a list, which plotly.js does not accept (it
-/// falls back to a light from the side); it wants plain numbers. User text cannot hold the
-/// pattern, since quotes inside JSON strings are escaped.
-pub(crate) fn with_light(json: &str, flat: bool) -> String {
-    json.replace(
-        r#""lightposition":{"x":[0.0],"y":[0.0],"z":[0.0]}"#,
-        if flat {
-            r#""lightposition":{"x":-4,"y":6,"z":-8}"#
-        } else {
-            r#""lightposition":{"x":-12,"y":18,"z":-1}"#
-        },
-    )
-}
-
 /// Unconnected points.
 pub(crate) fn points(
     points: &[[f64; 3]],
@@ -84,6 +59,26 @@ pub(crate) fn points(
                 .size(size_px)
                 .symbol(MarkerSymbol::Circle)
                 .line(Line::new().width(0.0)),
+        )
+        .hover_info(HoverInfo::Skip)
+        .show_legend(false)
+}
+
+/// Unconnected points, each of its own colour, with a thin outline.
+pub(crate) fn points_of(
+    points: &[[f64; 3]],
+    colours: Vec<&'static str>,
+    size_px: usize,
+) -> Box<ScatterTrace> {
+    let [x, y, z] = columns(points);
+    Scatter3D::new(x, y, z)
+        .mode(Mode::Markers)
+        .marker(
+            Marker::new()
+                .color_array(colours)
+                .size(size_px)
+                .symbol(MarkerSymbol::Circle)
+                .line(Line::new().width(1.0).color("#ffffff")),
         )
         .hover_info(HoverInfo::Skip)
         .show_legend(false)
@@ -107,24 +102,4 @@ pub(crate) fn text(points: &[[f64; 3]], labels: Vec<String>) -> Box<ScatterTrace
         .text_array(labels)
         .hover_info(HoverInfo::Skip)
         .show_legend(false)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use plotly::Trace;
-
-    #[test]
-    fn the_light_position_is_three_numbers() {
-        let trace = mesh(
-            &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-            &[[0, 1, 2]],
-            "#fff",
-        );
-        let json: serde_json::Value =
-            serde_json::from_str(&with_light(&trace.to_json(), false)).unwrap();
-        for axis in ["x", "y", "z"] {
-            assert!(json["lightposition"][axis].is_number());
-        }
-    }
 }

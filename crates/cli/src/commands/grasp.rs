@@ -14,7 +14,7 @@ use shape::PointCloud;
 use crate::args::{Common, GraspOptions};
 use crate::failure::Failure;
 use crate::outcomes::{reasons, sentence, why_none};
-use crate::{hands, input, output, result};
+use crate::{hands, input, output, page, result};
 
 /// The built-in object that stands for "never seen before".
 const UNSEEN: &str = "U1";
@@ -197,11 +197,7 @@ fn object(options: &GraspOptions, common: &Common) -> Result<(String, PointCloud
 fn farthest_contact(file: &GraspsFile, cloud: &PointCloud) -> f64 {
     let contacts = file.grasps.iter().flat_map(|g| &g.contacts_m);
     contacts
-        .map(|c| {
-            let c = nalgebra::Point3::from(*c);
-            let nearest = cloud.points().iter().map(|p| (p - c).norm_squared());
-            nearest.fold(f64::INFINITY, f64::min).sqrt()
-        })
+        .map(|c| page::nearest(cloud, c))
         .fold(0.0, f64::max)
 }
 

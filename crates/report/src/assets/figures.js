@@ -1,12 +1,11 @@
-(function () {
-  "use strict";
   const figures = new Map();
 
   function show(div) {
     if (!figures.has(div)) {
-      figures.set(div, JSON.parse(document.getElementById(div.id + "-data").textContent));
+      figures.set(div, data[div.id + "-data"]);
     }
     const figure = figures.get(div);
+    theme.paint(figure.layout);
     Plotly.newPlot(div, figure.data, figure.layout, figure.config);
   }
 
@@ -30,4 +29,10 @@
     if (div.classList.contains("three-d")) watcher.observe(div);
     else show(div);
   }
-})();
+
+  theme.onChange(function () {
+    for (const [div, figure] of figures) {
+      theme.paint(figure.layout);
+      if (div.dataset.drawn !== "no") Plotly.react(div, figure.data, figure.layout, figure.config);
+    }
+  });
