@@ -1,12 +1,14 @@
 //! Distances between the parts of a hand and to the object; the only user of parry.
 
+mod gap;
 mod object;
 mod piece;
 mod piece_frame;
 mod self_distance;
 mod tree;
 
-pub use object::{CollisionObject, Gap, ObjectError, Precision};
+pub use gap::Gap;
+pub use object::{CollisionObject, ObjectError, Precision};
 pub use piece::GeometryError;
 pub(crate) use piece::{ConvexPiece, LinkShape, check_hull};
 pub(crate) use self_distance::{all_close_pairs, first_close_pair};

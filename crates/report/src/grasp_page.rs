@@ -104,7 +104,7 @@ fn controls_html(page: &GraspPage) -> String {
     }
     if page.grasps.iter().any(|g| g.hand.is_some()) {
         switches.push(("hand", "hand", true));
-        switches.push(("handglass", "hand see through", false));
+        switches.push(("handglass", "hand see through", true));
     }
     if page.grasps.iter().any(|g| g.weakest.is_some()) {
         switches.push(("wrench", "weakest wrench", false));
@@ -183,7 +183,7 @@ fn list_html(page: &GraspPage) -> String {
     out += "<div class=\"scroll tall\"><table id=\"grasps\">\n<thead><tr>\
             <th scope=\"col\">Rank</th><th scope=\"col\" class=\"num\">Quality</th>\
             <th scope=\"col\" class=\"num\">Lower</th>\
-            <th scope=\"col\" class=\"num\">To scan / mm</th><th scope=\"col\">Hand</th>\
+            <th scope=\"col\" class=\"num\">Scan / mm</th><th scope=\"col\">Hand</th>\
             <th scope=\"col\">Source</th></tr></thead>\n<tbody>\n";
     for (index, grasp) in page.grasps.iter().enumerate() {
         out += &row_html(index, grasp);

@@ -16,7 +16,7 @@ pub(crate) const PLOTLY: &str = include_str!(concat!(env!("OUT_DIR"), "/plotly.j
 
 /// Text, deflated (zlib) and in base64; the browser unpacks it by its own `DecompressionStream`.
 pub(crate) fn deflated(text: &str) -> String {
-    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
     // Writing to memory does not fail.
     let written = encoder.write_all(text.as_bytes());
     let bytes = written.and_then(|()| encoder.finish()).unwrap_or_default();
@@ -30,7 +30,8 @@ pub(crate) fn figure_value(json: &str) -> Value {
 }
 
 /// Prepares a figure of plotly.js: sets the light of its meshes, and packs long lists of coordinates
-/// as 32-bit floats and of vertex indices as 32-bit integers, little endian.
+/// as 32-bit floats and of vertex indices as integers of 16 bits where these suffice,
+/// little endian.
 ///
 /// plotly.js reads such lists in the form {dtype, bdata}. The light stands over the viewer's left
 /// shoulder, whichever way the object is turned: plotly.js takes its position in coordinates of the
@@ -48,10 +49,11 @@ pub(crate) fn prepare(value: &mut Value, flat: bool) {
                     json!({ "x": x, "y": y, "z": z }),
                 );
                 for key in ["i", "j", "k"] {
-                    pack(object.get_mut(key), "u4", |v| {
-                        let index = v.as_u64().and_then(|i| u32::try_from(i).ok())?;
-                        Some(index.to_le_bytes())
-                    });
+                    let narrow = |v: &Value| Some(u16::try_from(v.as_u64()?).ok()?.to_le_bytes());
+                    let wide = |v: &Value| Some(u32::try_from(v.as_u64()?).ok()?.to_le_bytes());
+                    if !pack(object.get_mut(key), "u2", narrow) {
+                        pack(object.get_mut(key), "u4", wide);
+                    }
                 }
             }
             if object
@@ -70,16 +72,20 @@ pub(crate) fn prepare(value: &mut Value, flat: bool) {
     }
 }
 
-/// Packs a list of numbers if it is long, and if `bytes` knows every entry.
-fn pack(list: Option<&mut Value>, kind: &str, bytes: impl Fn(&Value) -> Option<[u8; 4]>) {
-    let Some(list) = list else { return };
+/// Packs a list of numbers if it is long, and if `bytes` knows every entry; whether it did.
+fn pack<const N: usize>(
+    list: Option<&mut Value>,
+    kind: &str,
+    bytes: impl Fn(&Value) -> Option<[u8; N]>,
+) -> bool {
+    let Some(list) = list else { return false };
     let Some(entries) = list.as_array().filter(|l| l.len() >= WORTH_PACKING) else {
-        return;
+        return false;
     };
-    let packed: Option<Vec<[u8; 4]>> = entries.iter().map(bytes).collect();
-    if let Some(packed) = packed {
-        *list = json!({ "dtype": kind, "bdata": STANDARD.encode(packed.as_flattened()) });
-    }
+    let packed: Option<Vec<[u8; N]>> = entries.iter().map(bytes).collect();
+    let Some(packed) = packed else { return false };
+    *list = json!({ "dtype": kind, "bdata": STANDARD.encode(packed.as_flattened()) });
+    true
 }
 
 #[cfg(test)]
@@ -132,6 +138,6 @@ mod tests {
         let bytes = STANDARD
             .decode(figure[0]["i"]["bdata"].as_str().unwrap())
             .unwrap();
-        assert_eq!(bytes[4 * 99..], 99_u32.to_le_bytes());
+        assert_eq!(bytes[2 * 99..], 99_u16.to_le_bytes());
     }
 }

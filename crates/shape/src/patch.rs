@@ -7,6 +7,9 @@ use sph::direction::tangent_frame;
 use crate::cells::Cells;
 use crate::point_cloud::RadialSamples;
 
+/// Two sheets of points closer than this share of the radius count as one.
+pub(crate) const LEAST_GAP: f64 = 0.01;
+
 /// The quadratic r(u, v) over the tangent plane that fits some samples best, and what it leaves.
 pub(crate) struct Patch {
     /// Mean direction of the samples.

@@ -3,7 +3,7 @@
 use sph::Direction;
 
 use crate::cells::Cells;
-use crate::patch::{Patch, members};
+use crate::patch::{LEAST_GAP, Patch, members};
 use crate::point_cloud::RadialSamples;
 use crate::vessel::{Opening, opening};
 
@@ -18,8 +18,6 @@ const LEAST_FILLED: f64 = 0.25;
 const TWO_SHEETS: f64 = 0.8;
 /// Each sheet holds at least this share of a cell's points: stray points make no sheet.
 const LEAST_SHARE: f64 = 0.15;
-/// Sheets closer than this part of the radius count as one.
-pub(crate) const LEAST_GAP: f64 = 0.01;
 
 /// A direction along which the surface is met at two radii.
 #[derive(Clone, Copy, Debug, PartialEq)]

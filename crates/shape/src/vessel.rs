@@ -11,9 +11,8 @@ use sph::Direction;
 use sph::direction::{even_directions, retract, tangent_frame};
 
 use crate::cells::Cells;
-use crate::patch::{Patch, members};
+use crate::patch::{LEAST_GAP, Patch, members};
 use crate::point_cloud::RadialSamples;
-use crate::star::LEAST_GAP;
 
 /// Openings of a smaller share of the sphere than this are holes of a scan.
 const LEAST_OPENING: f64 = 0.05;

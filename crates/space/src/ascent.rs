@@ -4,10 +4,12 @@ mod bundle;
 mod climber;
 mod monotone;
 mod paper;
+mod settings;
 mod walls;
 
-pub use monotone::{AscentError, MonotoneAscent};
+pub use monotone::AscentError;
 pub use paper::PaperAscent;
+pub use settings::MonotoneAscent;
 
 use sph::Direction;
 

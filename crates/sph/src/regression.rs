@@ -5,7 +5,6 @@ mod dense;
 pub mod gram;
 mod lanczos;
 mod leverage;
-mod likelihood;
 mod operator;
 pub mod penalty;
 mod points;

@@ -137,21 +137,31 @@ fn synthesis_writes_json_yaml_and_a_page() {
     assert!(yaml.contains("gripper_frame_link: \"sdh_palm_link\""));
     let page = std::fs::read_to_string(here.join("one/index.html")).unwrap();
     assert!(page.contains("Plotly") && page.contains("hand poses give a stable grasp"));
+    // What comes out goes into the other commands.
+    stdout(&moduli(here, &["quality", "one/grasps.json"]));
+    stdout(&moduli(here, &["ascend", "egg.shape", "one/grasps.json"]));
+}
 
-    // The same seed gives the same bytes, whatever the number of threads; another seed does not.
-    let mut again = arguments.to_vec();
-    again[10] = "two";
-    stdout(&moduli(here, &[&again[..], &["--threads", "1"]].concat()));
+#[test]
+fn the_seed_decides_and_not_the_threads() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    fitted(here, "egg", [0.035, 0.030, 0.045], CENTRE);
+    let run = |output: &str, more: &[&str]| {
+        let arguments = ["synthesize", "egg.shape", "--poses", "60", "-o", output];
+        stdout(&moduli(here, &[&arguments[..], more].concat()));
+    };
+    run("one", &[]);
+    run("two", &["--threads", "1"]);
     for name in ["grasps.json", "grasps.yaml", "index.html"] {
         let bytes = |run: &str| std::fs::read(here.join(run).join(name)).unwrap();
         assert!(bytes("one") == bytes("two"), "{name}");
     }
-    again[10] = "three";
-    stdout(&moduli(here, &[&again[..], &["--seed", "1"]].concat()));
-    assert_ne!(read(here, "three/grasps.json"), file);
-    // What comes out goes into the other commands.
-    stdout(&moduli(here, &["quality", "one/grasps.json"]));
-    stdout(&moduli(here, &["ascend", "egg.shape", "one/grasps.json"]));
+    run("three", &["--seed", "1"]);
+    assert_ne!(
+        read(here, "three/grasps.json"),
+        read(here, "one/grasps.json")
+    );
 }
 
 #[test]
@@ -232,7 +242,7 @@ fn a_hand_of_ones_own_is_checked_and_used() {
         serde_json::json!(["left", "right"])
     );
     let page = std::fs::read_to_string(here.join("page.html")).unwrap();
-    assert!(page.contains("half: opened") && page.contains("left_slide"));
+    assert!(page.contains("figure-0-data") && page.contains("left_slide"));
 
     // Two fingers never close a grasp with point contacts, and the program says so.
     fitted(here, "egg", [0.035, 0.030, 0.045], CENTRE);
@@ -377,6 +387,15 @@ fn hostile_hands_are_refused_by_name() {
         3,
         &["unknown.toml", "'thumb'", "does not exist", "hand check"],
     );
+    assert!(!here.join("x").exists(), "no result of a failure");
+}
+
+#[test]
+fn options_of_hands_are_checked() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    std::fs::write(here.join("empty.toml"), "").unwrap();
+    fitted(here, "egg", [0.035, 0.030, 0.045], CENTRE);
     let wrong_shape = ["synthesize", "egg.xyz", "-o", "x"];
     refused(&moduli(here, &wrong_shape), 3, &["egg.xyz", "moduli fit"]);
     for (flag, value, word) in [

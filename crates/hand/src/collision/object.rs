@@ -5,6 +5,7 @@ use shape::{RadialShape, TriangleMesh};
 use sph::Direction;
 use thiserror::Error;
 
+use super::gap::Gap;
 use super::piece::{ConvexPiece, LinkShape};
 use super::piece_frame::PieceFrame;
 use super::tree::{Content, Tree};
@@ -58,42 +59,6 @@ pub struct Precision {
     pub absolute: f64,
     /// or by this share of the distance.
     pub relative: f64,
-}
-
-/// Bounds on a distance to the mesh, metres; 0 where bodies meet.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Gap {
-    /// The distance is at least this.
-    pub lower: f64,
-    /// The distance is at most this; infinite beyond the cutoff.
-    pub upper: f64,
-    /// A point of the mesh at distance `upper`, in the object frame, where there is one.
-    pub on_object: Option<Point3<f64>>,
-}
-
-impl Gap {
-    const TOUCHING: Gap = Gap {
-        lower: 0.0,
-        upper: 0.0,
-        on_object: None,
-    };
-    const FAR: Gap = Gap {
-        lower: f64::INFINITY,
-        upper: f64::INFINITY,
-        on_object: None,
-    };
-
-    /// The bounds on the smaller of two distances.
-    fn min(self, other: Gap) -> Gap {
-        Gap {
-            lower: self.lower.min(other.lower),
-            ..if other.upper < self.upper {
-                other
-            } else {
-                self
-            }
-        }
-    }
 }
 
 impl<'a> CollisionObject<'a> {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 
-use super::object::Gap;
+use super::gap::Gap;
 use super::piece::ConvexPiece;
 use super::tree::Node;
 

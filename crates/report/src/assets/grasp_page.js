@@ -17,7 +17,7 @@
     const traces = data.plot.data.concat(count > 0 ? data.grasps[current] : []);
     for (const trace of traces) {
       if (trace.meta === "surface") trace.opacity = isOn("glass") ? 0.4 : 1;
-      if (trace.meta === "hand") trace.opacity = isOn("handglass") ? 0.35 : 1;
+      if (trace.meta === "hand") trace.opacity = isOn("handglass") ? 0.45 : 1;
       if (trace.meta === "surface") continue;
       if (trace.meta !== "grasp") trace.visible = isOn(trace.meta);
     }

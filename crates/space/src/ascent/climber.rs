@@ -6,7 +6,7 @@ use sph::Direction;
 use sph::direction::tangent_frame;
 
 use super::bundle::{Bundle, Promise};
-use super::monotone::MonotoneAscent;
+use super::settings::MonotoneAscent;
 use super::walls::{Crossed, Walls};
 use crate::constraints::Constraints;
 use crate::quality::{LinearPieces, Quality, dot, moved};

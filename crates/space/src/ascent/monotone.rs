@@ -10,39 +10,11 @@ use shape::Surface;
 use sph::Direction;
 
 use super::climber::Climber;
+use super::settings::MonotoneAscent;
 use super::{Ascent, Step};
 use crate::constraints::{ConstraintError, Constraints};
 use crate::quality::Quality;
 use crate::scatter::nearby;
-
-/// Settings of the monotone ascent.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MonotoneAscent {
-    /// Most steps tried, taken or not, from one start.
-    pub steps: usize,
-    /// Longest move of all contacts together in one step, radians.
-    pub reach: f64,
-    /// Stop when no direction promises a slope above this, per radian.
-    pub stationarity: f64,
-    /// Stop when the model promises less than this.
-    pub least_gain: f64,
-    /// New starts when a climb ends open, or from an open start below [`Quality::stable_above`]:
-    /// around where it began, ever farther.
-    pub restarts: usize,
-}
-
-impl Default for MonotoneAscent {
-    /// Enough steps for household objects: some 80 qualities an ascent.
-    fn default() -> Self {
-        Self {
-            steps: 200,
-            reach: 0.3,
-            stationarity: 1e-4,
-            least_gain: 1e-7,
-            restarts: 8,
-        }
-    }
-}
 
 /// Why a climb within constraints has no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

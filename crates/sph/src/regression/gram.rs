@@ -6,6 +6,8 @@
 //! One pass over the points; nothing after it depends on their number. Applied as multiplication
 //! by ρ on the grid it serves conjugate gradients; assembled ring by ring it can be factored.
 
+mod likelihood;
+
 use std::sync::OnceLock;
 
 use faer::Mat;
@@ -14,7 +16,6 @@ use rayon::prelude::*;
 use super::conjugate::{self, Limits, Outcome, dot};
 use super::dense::{Dense, Factor};
 use super::leverage::quadratic_form;
-use super::likelihood;
 use super::operator::Multiplier;
 use super::points::Points;
 use super::{Method, Penalty, RegressionError, Samples, qr};

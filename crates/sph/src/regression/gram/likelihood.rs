@@ -1,10 +1,10 @@
 //! The choice of λ by restricted marginal likelihood, from solutions alone: no determinant.
 
-use super::conjugate::Limits;
-use super::gram::Gram;
-use super::penalty::roughness;
-use super::{Penalty, RegressionError};
+use super::Gram;
 use crate::index;
+use crate::regression::conjugate::Limits;
+use crate::regression::penalty::roughness;
+use crate::regression::{Penalty, RegressionError};
 
 /// Range of log₁₀(λ/N), and where the search begins.
 const RANGE: (f64, f64) = (-14.0, 0.0);
