@@ -88,6 +88,75 @@ fn epsilons(c: &mut Criterion) {
     }
 }
 
+/// A contact on an object of ten centimetres that presses against `outward`.
+fn on(position: Vector3<f64>, outward: Vector3<f64>) -> Contact {
+    Contact {
+        position: position.into(),
+        inward_normal: Unit::new_normalize(-outward),
+    }
+}
+
+/// Contacts evenly around a circle.
+fn ring(count: usize) -> Vec<Contact> {
+    (0..count)
+        .map(|i| {
+            let (sin, cos) = (std::f64::consts::TAU * i as f64 / count as f64).sin_cos();
+            let p = Vector3::new(cos, sin, 0.0);
+            on(p * 0.05, p)
+        })
+        .collect()
+}
+
+/// Families that random grasps never meet: symmetric, coplanar and axis-aligned ones.
+fn families() -> Vec<(&'static str, Vec<Vec<Contact>>)> {
+    let mut rng = ChaCha8Rng::seed_from_u64(2);
+    let on_box = |rng: &mut ChaCha8Rng| {
+        let axis = rng.random_range(0..3);
+        let mut p = Vector3::from_fn(|_, _| 0.01 * f64::from(rng.random_range(-3..4)));
+        let mut n = Vector3::zeros();
+        n[axis] = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
+        p[axis] = 0.05 * n[axis];
+        on(p, n)
+    };
+    let coplanar = |rng: &mut ChaCha8Rng| {
+        let v = in_ball(rng);
+        let p = Vector3::new(v.x, v.y, 0.0);
+        on(p * 0.05, p)
+    };
+    let boxes = (0..GRASPS)
+        .map(|_| (0..4).map(|_| on_box(&mut rng)).collect())
+        .collect();
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let planes = (0..GRASPS)
+        .map(|_| (0..4).map(|_| coplanar(&mut rng)).collect())
+        .collect();
+    vec![
+        ("ring of 3", vec![ring(3); GRASPS]),
+        ("ring of 4", vec![ring(4); GRASPS]),
+        ("box, 4 contacts", boxes),
+        ("coplanar, 4 contacts", planes),
+    ]
+}
+
+fn structured(c: &mut Criterion) {
+    for (name, grasps) in families() {
+        for tolerance in [1e-4, 1e-8] {
+            let convention = convention(Edges::Round { tolerance }).with_torque_length(0.05);
+            let centre = Point3::origin();
+            let mut workspace = Workspace::new();
+            let name = format!("grasp/epsilon {name}, round {tolerance:e}, 100 grasps");
+            c.bench_function(&name, |b| {
+                b.iter(|| {
+                    for contacts in &grasps {
+                        let model = GraspModel::new(contacts, &centre, &convention);
+                        black_box(epsilon(&model, &mut workspace).is_ok());
+                    }
+                });
+            });
+        }
+    }
+}
+
 fn others(c: &mut Criterion) {
     let closed = grasps(true);
     let convention = convention(Edges::Polygon(8));
@@ -137,6 +206,6 @@ fn others(c: &mut Criterion) {
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(10).warm_up_time(std::time::Duration::from_millis(500)).measurement_time(std::time::Duration::from_secs(2));
-    targets = epsilons, others
+    targets = epsilons, structured, others
 }
 criterion_main!(benches);

@@ -68,7 +68,7 @@ const TOLERANCES: [f64; 4] = [RELATIVE_TOLERANCE, 1e-10, 3e-14, 1e-9];
 
 /// Facets after which a curved hull is not searched any further if its ball is smaller than the
 /// interval that was asked for.
-const MOST_FOR_CLOSURE: usize = 3_000;
+const MOST_FOR_CLOSURE: usize = 2_000;
 /// A polytope of more facets than this is not made again with another tolerance.
 const LARGE: usize = 20_000;
 /// Vertices that are taken twice.
