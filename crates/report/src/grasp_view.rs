@@ -44,7 +44,7 @@ pub(crate) fn json(page: &GraspPage) -> String {
         grasps.join(",\n"),
         cameras.join(",\n")
     ));
-    packed::prepare(&mut value, false);
+    packed::set_light(&mut value, false);
     value.to_string()
 }
 

@@ -120,7 +120,7 @@ fn block_html(
     };
     let id = format!("figure-{}", figures.len());
     let mut figure = figure_value(&plot.to_json());
-    packed::prepare(&mut figure, kind == Kind::Grid);
+    packed::set_light(&mut figure, kind == Kind::Grid);
     figures.push((format!("{id}-data"), figure.to_string()));
     Ok(figure_html(&id, title, shape, kind))
 }

@@ -1,7 +1,7 @@
 //! Members of M^rad: surfaces f(p) = r(p) p with r > 0 everywhere.
 
 use nalgebra::{Matrix3, Point3, UnitVector3, Vector3};
-use sph::bounds::{Range, certified_range};
+use sph::bounds::{Range, certified_range, tight_range};
 use sph::grid::RingGrid;
 use sph::{Basis, Coefficients, Direction};
 
@@ -82,6 +82,24 @@ impl RadialShape {
     /// Certified bounds (r_min, r_max): r_min ≤ r(p) ≤ r_max for every p, r_min > 0. Metres.
     pub fn radius_bounds(&self) -> (f64, f64) {
         (self.range.lower, self.range.upper)
+    }
+
+    /// The same bounds as [`RadialShape::radius_bounds`], each within `share` of half the range of
+    /// radii that are attained. Costs about 30 ms at L = 50, against nothing for `radius_bounds`,
+    /// whose bounds are about 2 % of that range wide of the radii.
+    ///
+    /// ```
+    /// let shape = shape::RadialShape::sphere(8, 0.04)?;
+    /// let (low, high) = shape.tight_radius_bounds(1e-3);
+    /// assert!(low <= 0.04 && 0.04 <= high && high - low < 1e-12);
+    /// # Ok::<(), shape::RadialError>(())
+    /// ```
+    pub fn tight_radius_bounds(&self, share: f64) -> (f64, f64) {
+        let tight = tight_range(&self.coefficients, share);
+        (
+            tight.lower.max(self.range.lower),
+            tight.upper.min(self.range.upper),
+        )
     }
 
     pub(crate) fn range(&self) -> Range {

@@ -48,12 +48,14 @@ pub(crate) fn run(options: &InfoOptions) -> Result<(), Failure> {
 
 fn shape_lines(record: &ShapeRecord) -> Result<Vec<String>, StoredShapeError> {
     let shape = stored_shape(record)?;
-    let (low, high) = shape.radius_bounds();
+    let (low, high) = shape.tight_radius_bounds(1e-3);
+    // Rounded outward: what is printed is proved as well.
+    let (low, high) = ((1e6 * low).floor() / 1e3, (1e6 * high).ceil() / 1e3);
     let mass = shape.mass_properties();
     Ok(vec![
-        format!("shape       {}", record.name),
+        format!("shape       {}", record.name.escape_debug()),
         format!("degree      {}", shape.degree()),
-        format!("certified   {:.3} mm ≤ r ≤ {:.3} mm", 1e3 * low, 1e3 * high),
+        format!("certified   {low:.3} mm ≤ r ≤ {high:.3} mm"),
         format!(
             "fit         {} points, rms {:.3} mm, λ {:.3e}",
             record.points,
