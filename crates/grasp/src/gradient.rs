@@ -17,7 +17,7 @@ pub enum FrameRule {
     Transported,
 }
 
-/// Derivatives by everything a grasp is made of, one entry a contact.
+/// Derivatives by everything a grasp is made of, one entry per contact.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gradient {
     /// By the contact positions (1/length).

@@ -33,7 +33,7 @@ pub struct ConvexHull {
 impl ConvexHull {
     /// The hull of points in general or special position; repeated points are harmless.
     ///
-    /// Cost: about 0.1 µs a facet ever made and the points times the facets.
+    /// Cost: about 0.1 µs per facet made, and one pass over the points per facet.
     pub fn new(points: &[Wrench]) -> Result<Self, HullError> {
         if let Some(index) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
             return Err(HullError::NotFinite { index });

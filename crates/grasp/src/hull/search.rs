@@ -319,7 +319,7 @@ impl Search {
     /// Goes on, after a ball was found, until no point lies above a facet of offset up to `level`
     /// by more than `gap` (or rounding).
     ///
-    /// False where a polytope that was moved needs to be made anew ([`Search::ball_again`]).
+    /// False where a polytope whose vertices moved must be rebuilt ([`Search::ball_again`]).
     pub(crate) fn finish(
         &mut self,
         source: &mut impl Support,
