@@ -130,10 +130,10 @@ pub enum FitError {
         /// Least and largest radius among the points, metres.
         seen: (f64, f64),
     },
-    /// Heat flows for no such time.
+    /// The time σ of the heat flow is negative or not a number.
     #[error("heat for a time of {sigma}: expected a number, at least 0")]
     Heat {
-        /// The time.
+        /// The time σ that was given.
         sigma: f64,
     },
     /// Residuals were asked for against another cloud.

@@ -2,6 +2,27 @@
 //!
 //! Surfaces live in a centred frame, whose origin is the mean of the cloud (Sec. IV-A of the
 //! paper); [`fit::Fit`] keeps the way back to the frame of the cloud.
+//!
+//! A cloud becomes a surface whose radius is proved positive in every direction:
+//!
+//! ```
+//! use nalgebra::{Point3, Vector3};
+//! use shape::{FitSettings, PointCloud, fit::fit};
+//!
+//! // Points of an egg with half axes of 3, 4 and 5 cm, whose middle is at x = 0.5 m.
+//! let directions = sph::direction::even_directions(2000);
+//! let points = directions.iter().map(|p| Point3::new(0.5 + 0.03 * p.x, 0.04 * p.y, 0.05 * p.z));
+//! let cloud = PointCloud::new(points.collect())?;
+//!
+//! let egg = fit(&cloud, &FitSettings { degree: 12, lambda: None })?;
+//! let (least, largest) = egg.shape.radius_bounds(); // metres, certified
+//! assert!(0.028 < least && largest < 0.052);
+//! assert!((egg.centre_in_cloud - Point3::new(0.5, 0.0, 0.0)).norm() < 1e-3);
+//!
+//! let top = sph::Direction::new_normalize(Vector3::z());
+//! assert!((egg.shape.radius(&top) - 0.05).abs() < 2e-4);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod algebra;
 mod cells;

@@ -49,6 +49,18 @@ pub struct RadialShape {
 
 impl RadialShape {
     /// Certifies r > 0 on the whole sphere ([`certified_range`]) and computes the mass properties.
+    ///
+    /// ```
+    /// use shape::RadialShape;
+    /// use sph::Coefficients;
+    ///
+    /// // The sphere of 3 cm is a member of M^rad, and a negative radius is not.
+    /// let ball = RadialShape::new(Coefficients::constant(4, 0.03))?;
+    /// let volume = 4.0 / 3.0 * std::f64::consts::PI * 0.03_f64.powi(3);
+    /// assert!((ball.mass_properties().volume / volume - 1.0).abs() < 1e-9);
+    /// assert!(RadialShape::new(Coefficients::constant(4, -0.03)).is_err());
+    /// # Ok::<(), shape::RadialError>(())
+    /// ```
     pub fn new(coefficients: Coefficients) -> Result<Self, RadialError> {
         let range = certify(&coefficients)?;
         Ok(Self::with_range(coefficients, range))
@@ -69,12 +81,12 @@ impl RadialShape {
         Self::new(Coefficients::constant(degree, radius))
     }
 
-    /// β.
+    /// The coefficients β of the radius, metres.
     pub fn coefficients(&self) -> &Coefficients {
         &self.coefficients
     }
 
-    /// L.
+    /// The degree L of the coefficients.
     pub fn degree(&self) -> usize {
         self.coefficients.degree()
     }
@@ -131,7 +143,7 @@ impl RadialShape {
     /// The paper's regular (θ,φ) mesh: `rows` circles of latitude from pole to pole, `columns`
     /// points each. 100 × 100 is the paper's mesh of 10,000 vertices (Sec. IV-C).
     ///
-    /// The poles appear once a column, as on the paper's regular grid; triangles that would have
+    /// The poles appear once per column, as on the paper's regular grid; triangles that would have
     /// no area there are left out. Counter-clockwise seen from outside.
     pub fn mesh(&self, rows: usize, columns: usize) -> TriangleMesh {
         let grid = RingGrid::equiangular(rows, columns);

@@ -2,6 +2,30 @@
 //!
 //! Implements Sec. III-C, IV-B, IV-D and IV-E of the paper. Surfaces and contacts are in the
 //! centred frame of `shape`.
+//!
+//! A grasp of three contacts on a ball is made better; the quality never falls on the way:
+//!
+//! ```
+//! use grasp::Convention;
+//! use nalgebra::{Point3, Vector3};
+//! use shape::RadialShape;
+//! use space::{MonotoneAscent, Objective};
+//! use sph::Direction;
+//!
+//! let ball = RadialShape::sphere(4, 0.04)?;
+//! let mut quality = Objective::new(&Convention::paper(), &ball, &Point3::origin());
+//! let start = [
+//!     Vector3::new(1.0, 0.0, 0.1),
+//!     Vector3::new(-0.5, 0.7, 0.0),
+//!     Vector3::new(-0.3, -1.0, 0.2),
+//! ]
+//! .map(Direction::new_normalize);
+//!
+//! let ascent = MonotoneAscent::default().climb(&ball, &start, &mut quality, |_| {})?;
+//! assert!(ascent.start_quality > 0.0);
+//! assert!(ascent.quality > ascent.start_quality);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod ascent;
 pub mod chart;

@@ -8,11 +8,25 @@ use sph::direction::geodesic;
 use crate::point::ModuliPoint;
 
 /// Shapes along the straight line u(t) = (1−t)f + tf′, contacts along great circles.
+///
+/// ```
+/// use shape::RadialShape;
+/// use space::{ModuliPoint, Path};
+///
+/// // Half-way between balls of 3 and 5 cm is the ball of 4 cm.
+/// let ball = |radius| RadialShape::sphere(4, radius);
+/// let small = ModuliPoint { surface: ball(0.03)?, contacts: vec![] };
+/// let large = ModuliPoint { surface: ball(0.05)?, contacts: vec![] };
+/// let middle = Path { from: &small, to: &large }.at(0.5)?;
+/// let (least, largest) = middle.surface.radius_bounds();
+/// assert!((least - 0.04).abs() < 1e-6 && (largest - 0.04).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Path<'a> {
-    /// γ(0).
+    /// The start γ(0).
     pub from: &'a ModuliPoint<RadialShape>,
-    /// γ(1); as many contacts as γ(0).
+    /// The end γ(1); it has as many contacts as γ(0).
     pub to: &'a ModuliPoint<RadialShape>,
 }
 

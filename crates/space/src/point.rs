@@ -8,9 +8,9 @@ use sph::Direction;
 /// (f, (p₁, …, p_m)) ∈ M × (S²)^m: a surface and contacts on it (Definition 3.3 of the paper).
 #[derive(Clone, Debug)]
 pub struct ModuliPoint<S> {
-    /// f.
+    /// The surface f, in the centred frame.
     pub surface: S,
-    /// p₁, …, p_m.
+    /// The directions p₁, …, p_m of the contacts.
     pub contacts: Vec<Direction>,
 }
 

@@ -75,6 +75,18 @@ pub fn angle(p: &Direction, q: &Direction) -> f64 {
 /// The point at arc length |v| along the great circle that leaves p along the tangent v.
 ///
 /// v is in the units of the sphere (radians); its normal part is ignored. The exponential map of S².
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use sph::Direction;
+/// use sph::direction::{angle, log, retract};
+///
+/// // A quarter of a turn from +x along +y ends at +y; the logarithm finds the way again.
+/// let (x, y) = (Direction::new_normalize(Vector3::x()), Direction::new_normalize(Vector3::y()));
+/// let quarter = std::f64::consts::FRAC_PI_2 * Vector3::y();
+/// assert!(angle(&retract(&x, &quarter), &y) < 1e-15);
+/// assert!((log(&x, &y) - quarter).norm() < 1e-15);
+/// ```
 pub fn retract(p: &Direction, v: &Vector3<f64>) -> Direction {
     let tangent = project_tangent(p, v);
     let length = tangent.norm();
