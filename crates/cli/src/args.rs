@@ -17,9 +17,18 @@ pub(crate) use shapes::{
     DistanceOptions, EvalOptions, FitOptions, InfoOptions, MeshOptions, Model,
 };
 
-/// From a scan to grasps: smooth surfaces, certified quality, transfer between objects.
+/// Grasps from scans: smooth surfaces with proofs, certified grasp quality, transfer between objects.
+///
+/// Every point, pose and mesh that is read or written is in the frame of the user's cloud, in metres.
+/// Exit codes: 0 done, 2 wrong usage, 3 bad input, 4 refused on numerical grounds, 1 anything else.
 #[derive(Debug, Parser)]
-#[command(name = "moduli", version, about, arg_required_else_help = true)]
+#[command(
+    name = "moduli",
+    version,
+    about,
+    arg_required_else_help = true,
+    after_help = "Example: moduli grasp scan.ply -o out    (then open out/index.html)"
+)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     pub(crate) common: Common,
@@ -30,48 +39,70 @@ pub(crate) struct Arguments {
 /// Options of every command.
 #[derive(Debug, Args)]
 pub(crate) struct Common {
-    /// Print results as JSON on standard output.
+    /// Print the result on standard output as JSON.
     #[arg(long, global = true)]
     pub(crate) json: bool,
-    /// Threads to use; all cores by default.
+    /// Number of threads; by default one per core.
     #[arg(long, global = true, value_parser = count_in::<1, 1024>)]
     pub(crate) threads: Option<usize>,
-    /// Seed of everything random; the same seed gives the same bytes.
+    /// Seed of all random numbers. The same seed gives the same files, byte for byte, on any number of
+    /// threads.
     #[arg(long, global = true, default_value_t = 0)]
     pub(crate) seed: u64,
-    /// No progress on standard error.
+    /// Do not show progress on standard error.
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
 }
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Fit smooth surfaces to clouds and prove them valid.
+    /// Fit a smooth surface to each cloud or mesh and prove it valid.
+    #[command(
+        after_help = "Example: moduli fit scan.ply -o scan.shape\nExample: moduli fit bent.xyz --model spherical --directions U.npy -o bent.shape"
+    )]
     Fit(FitOptions),
-    /// Radius, gradient and normal of a shape at given directions.
+    /// Evaluate a surface at given directions.
+    #[command(after_help = "Example: moduli eval scan.shape --directions U.npy -o V.npy")]
     Eval(EvalOptions),
-    /// Write a shape as a triangle mesh.
+    /// Write a surface as a triangle mesh.
+    #[command(after_help = "Example: moduli mesh scan.shape -o scan_mesh.ply")]
     Mesh(MeshOptions),
-    /// Distances between shapes in the space of radial functions.
+    /// Print the distances between surfaces, in the space of radial functions.
+    #[command(after_help = "Example: moduli distance mug.shape bottle.shape")]
     Distance(DistanceOptions),
-    /// Quality of given grasps.
+    /// Compute the quality of given grasps.
+    #[command(
+        after_help = "Example: moduli quality out/grasps.json --all\nExample: moduli quality grasps.npy --convention dexnet -o Q.npy"
+    )]
     Quality(QualityOptions),
-    /// Improve grasps on their object.
+    /// Improve the quality of grasps by moving their contacts over the surface.
+    #[command(after_help = "Example: moduli ascend scan.shape out/grasps.json -o better.json")]
     Ascend(AscendOptions),
-    /// Carry grasps from one object to another.
+    /// Carry grasps from one object over to another.
+    #[command(
+        after_help = "Example: moduli transfer --from mug.shape --to cup.shape mug_grasps.json -o cup_grasps.json"
+    )]
     Transfer(TransferOptions),
-    /// Grasps of a hand on a shape, found afresh.
+    /// Sample hand poses around an object, close the hand from each, and rank the grasps.
+    #[command(after_help = "Example: moduli synthesize scan.shape --poses 1400 -o out")]
     Synthesize(SynthesizeOptions),
-    /// Hands of your own.
-    #[command(subcommand)]
+    /// Work with a custom hand.
+    #[command(
+        subcommand,
+        after_help = "Example: moduli hand check gripper.urdf gripper.toml"
+    )]
     Hand(HandCommand),
-    /// All of it: a cloud of an object never seen before, ranked grasps and a picture.
+    /// Do everything: fit the cloud, transfer and synthesize grasps, and write a page of the results.
+    #[command(
+        after_help = "Example: moduli grasp scan.ply -o out\nExample: moduli grasp scan.ply --unit mm --convention openrave -o out"
+    )]
     Grasp(GraspOptions),
-    /// What a file of ours holds.
+    /// Describe a shape, a library, a grasps.json, a cloud or a mesh.
+    #[command(after_help = "Example: moduli info scan.shape")]
     Info(InfoOptions),
 }
 
-/// A whole number between LOW and HIGH.
+/// Parses a whole number from LOW to HIGH.
 fn count_in<const LOW: usize, const HIGH: usize>(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(count) if (LOW..=HIGH).contains(&count) => Ok(count),
@@ -85,17 +116,17 @@ pub(crate) struct CloudOptions {
     /// Unit of the coordinates in the file.
     #[arg(long, value_enum, default_value_t = Unit::M)]
     pub(crate) unit: Unit,
-    /// Points taken from a mesh, spread by area.
+    /// Number of points sampled from a mesh, uniformly by area.
     #[arg(long, default_value_t = 25_000, value_parser = count_in::<100, 10_000_000>)]
     pub(crate) samples: usize,
-    /// Highest degree of the harmonics.
+    /// Highest degree of the spherical harmonics.
     #[arg(long, default_value_t = 50, value_parser = count_in::<0, 150>)]
     pub(crate) degree: usize,
-    /// Weight of the penalty; chosen from the data by default.
+    /// Weight of the smoothness penalty; by default it is chosen from the data.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) lambda: Option<f64>,
-    /// Smooth the surface by heat flowing for this time (0.001 softens edges): details narrower than
-    /// about its square root, in radians, go.
+    /// Smooth the surface by heat flow for this time. Details narrower than about its square root, in
+    /// radians, disappear; 0.001 rounds edges.
     #[arg(long, value_name = "SIGMA", allow_negative_numbers = true)]
     pub(crate) heat: Option<f64>,
 }
@@ -123,22 +154,23 @@ impl Unit {
     }
 }
 
+/// How contacts become wrenches, and how these are measured.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ConventionOptions {
-    /// paper, graspit, dexnet, frogger, openrave or unit [default: paper; for `quality`, the convention
-    /// that the file names].
-    #[arg(long)]
+    /// Convention: paper, graspit, dexnet, frogger, openrave or unit. Default: that of the grasps.json
+    /// for `quality`, otherwise paper.
+    #[arg(long, value_name = "NAME")]
     pub(crate) convention: Option<String>,
-    /// Friction coefficient in place of the convention's.
+    /// Friction coefficient, instead of the convention's.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) friction: Option<f64>,
-    /// Edges of the friction cone: a number, or `round`.
+    /// Number of edges of the friction cone, or `round`, instead of the convention's.
     #[arg(long)]
     pub(crate) edges: Option<String>,
-    /// Length that divides torques, in metres, in place of the convention's.
+    /// Length by which torques are divided, metres, instead of the convention's.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) torque_length: Option<f64>,
-    /// Width of the interval for round cones.
+    /// Width to which the interval of a round cone's quality is narrowed.
     #[arg(long, default_value_t = 1e-4)]
     pub(crate) tolerance: f64,
 }

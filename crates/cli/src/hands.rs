@@ -30,7 +30,7 @@ pub(crate) fn load(options: &HandOptions) -> Result<Hand, Failure> {
     Hand::new(model, &spec).map_err(|e| {
         Failure::input(
             &path,
-            format!("{e}; `moduli hand check` tells all that is wrong"),
+            format!("{e}; `moduli hand check` lists everything that is wrong"),
         )
     })
 }
@@ -75,6 +75,6 @@ pub(crate) fn spec_text(options: &HandOptions) -> Result<String, Failure> {
 pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     String::from_utf8(input::read(path)?).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
-        Failure::input(path, format!("not a text file: byte {at} is no UTF-8"))
+        Failure::input(path, format!("not a text file: byte {at} is not UTF-8"))
     })
 }

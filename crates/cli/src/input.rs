@@ -81,16 +81,18 @@ pub(crate) fn fit(cloud: &PointCloud, name: &str, options: &CloudOptions) -> Res
     });
     let fit = smoothed.map_err(|e| match e {
         FitError::Heat { sigma } => {
-            Failure::usage(format!("--heat {sigma}: expected a number, at least 0"))
+            Failure::usage(format!("--heat {sigma}: expected a number of at least 0"))
         }
         FitError::Regression(sph::regression::RegressionError::Penalty { lambda }) => {
-            Failure::usage(format!("--lambda {lambda}: expected a number ≥ 0"))
+            Failure::usage(format!(
+                "--lambda {lambda}: expected a number of at least 0"
+            ))
         }
         other => Failure::refused(format!("{name}: {other}")),
     })?;
     if fit.star.unseen > GUESSED {
         warn(format!(
-            "{name}: {:.0} % of the directions from the mean hold no point; the surface there is a guess",
+            "{name}: no point is seen in {:.0} % of the directions from the mean; the surface there is extrapolated",
             100.0 * fit.star.unseen
         ));
     }
@@ -187,7 +189,9 @@ pub(crate) fn changed(
         }
         Some(count) => {
             let count = count.parse().map_err(|_| {
-                Failure::usage(format!("--edges {count}: expected a number or `round`"))
+                Failure::usage(format!(
+                    "--edges {count}: expected a whole number or `round`"
+                ))
             })?;
             convention.edges = Edges::Polygon(count);
         }

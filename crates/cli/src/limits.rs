@@ -40,7 +40,7 @@ pub(crate) fn constraints(
 fn metres(name: &str, millimetres: Option<f64>) -> Result<Option<f64>, Failure> {
     match millimetres {
         Some(value) if !(value.is_finite() && value >= 0.0) => Err(Failure::usage(format!(
-            "{name} {value}: expected millimetres, at least 0"
+            "{name} {value}: expected a length in millimetres, at least 0"
         ))),
         _ => Ok(millimetres.map(|value| 1e-3 * value)),
     }

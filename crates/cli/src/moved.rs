@@ -20,7 +20,7 @@ const FAR: f64 = 5e-3;
 pub(crate) fn given(object: &Object, path: &Path) -> Result<Vec<Given>, Failure> {
     let file = input::grasps(path)?;
     if file.grasps.is_empty() {
-        return Err(Failure::input(path, "holds no grasps"));
+        return Err(Failure::input(path, "there are no grasps in the file"));
     }
     let mut farthest = 0.0_f64;
     let mut given = Vec::with_capacity(file.grasps.len());

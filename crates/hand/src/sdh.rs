@@ -28,11 +28,19 @@ pub enum LoadError {
 /// The Schunk SDH with our simplified collision model: three fingers, seven driven
 /// joints, pre-shapes "parallel" and "spread" (paper, Sec. IV-C).
 pub fn schunk_sdh() -> Result<Hand, LoadError> {
-    let model = load_urdf(SDH_URDF)?;
-    Ok(Hand::new(model, &HandSpec::from_toml(SDH_SPEC)?)?)
+    Hand::from_texts(SDH_URDF, SDH_SPEC)
 }
 
 impl Hand {
+    /// The hand of a URDF, used as a TOML says. The URDF's collision geometry is made of primitives:
+    /// for meshes see [`crate::load_urdf_with_meshes`].
+    ///
+    /// # Errors
+    /// One of the texts is refused, or they do not fit each other.
+    pub fn from_texts(urdf: &str, spec: &str) -> Result<Self, LoadError> {
+        Ok(Self::new(load_urdf(urdf)?, &HandSpec::from_toml(spec)?)?)
+    }
+
     /// The Schunk SDH that moduli carries, see [`schunk_sdh`].
     ///
     /// # Errors

@@ -62,6 +62,7 @@ pub use ::grasp::{
     TorqueLength, Wrench,
 };
 pub use ::hand::{Hand, OutcomeCounts};
+pub use ::record;
 pub use ::shape::io::Format;
 pub use ::shape::{FitSettings, PointCloud, RadialShape, SphericalShape, Surface};
 pub use ::sph::Direction;

@@ -9,21 +9,21 @@ use super::ConventionOptions;
 
 #[derive(Debug, Args)]
 pub(crate) struct QualityOptions {
-    /// Grasps: grasps.json, or .npy / .csv with 6m+3 columns for m contacts: the positions, the inward
-    /// normals, the centre (c1 c2 c3 n1 n2 n3 z for three).
+    /// The grasps: a grasps.json, or rows of 6m+3 numbers in .npy or .csv for m contacts: the positions,
+    /// the inward unit normals, and the point about which torques are taken.
     pub(crate) grasps: PathBuf,
     /// Also compute volume, L-infinity, min-weight, least friction, smallest singular value and the
     /// normal force per load, one named column each.
     #[arg(long, conflicts_with_all = ["metric", "contact", "certificate"])]
     pub(crate) all: bool,
-    /// What is measured. `friction-needed` is the least friction under which a grasp is closed.
+    /// The measure of quality.
     #[arg(long, value_enum, default_value_t = Metric::Epsilon)]
     pub(crate) metric: Metric,
     /// Contact model: `point`, `soft:RADIUS` (a disc under even pressure, with torsion 2/3 μ RADIUS) or
     /// `patch:RADIUS` (four point contacts on a square pad). RADIUS in metres.
     #[arg(long, default_value = "point", value_parser = contact_option)]
     pub(crate) contact: ContactOption,
-    /// The proof of every interval of epsilon quality, as JSON.
+    /// File for the proofs of the intervals of epsilon quality, as JSON.
     #[arg(long, value_name = "FILE")]
     pub(crate) certificate: Option<PathBuf>,
     /// File for the result, one row per grasp: quality, lower and upper bound, or all columns with
@@ -38,13 +38,13 @@ pub(crate) struct QualityOptions {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Metric {
-    /// The largest ball in the hull of all wrenches, with a proved interval.
+    /// Radius of the largest ball about 0 in the hull of all wrenches, with a proved interval.
     Epsilon,
-    /// The same where every contact has a force of its own.
+    /// The same when the force of each contact is bounded by itself instead of their sum.
     Linf,
-    /// The largest least weight of a balance (polygonal cones).
+    /// The largest weight that every edge can keep in a balance (polygonal cones only).
     MinWeight,
-    /// The least friction coefficient under which the grasp is closed.
+    /// The least friction coefficient at which the grasp is force-closed.
     FrictionNeeded,
 }
 
@@ -61,7 +61,7 @@ fn contact_option(text: &str) -> Result<ContactOption, String> {
         let radius = text.parse::<f64>().ok();
         radius
             .filter(|r| r.is_finite() && *r > 0.0)
-            .ok_or_else(|| format!("`{text}` is no radius; expected metres above 0"))
+            .ok_or_else(|| format!("`{text}` is not a radius; expected metres above 0"))
     };
     match text.split_once(':') {
         None if text == "point" => Ok(ContactOption::Point),
@@ -73,26 +73,26 @@ fn contact_option(text: &str) -> Result<ContactOption, String> {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum AscentScheme {
-    /// Monotone, from analytic gradients of all deciding facets.
+    /// A bundle method with analytic gradients, which never lowers the quality.
     Ours,
-    /// 1,000 fixed steps along forward differences.
+    /// The paper's scheme: 1,000 fixed steps along forward differences.
     Paper,
 }
 
 /// Under which convention grasps are moved, and where the result goes.
 #[derive(Debug, Args)]
 pub(crate) struct MoveOptions {
-    /// The grasps where they ended, as grasps.json in the frame of the cloud of their shape.
+    /// File for the resulting grasps, as grasps.json in the frame of the cloud of their shape.
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
-    /// Every step of every grasp, as JSON.
+    /// File for every step of every grasp, as JSON.
     #[arg(long)]
     pub(crate) trace: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) convention: ConventionOptions,
 }
 
-/// What every grasp must keep.
+/// Limits that every grasp must respect.
 #[derive(Debug, Args)]
 pub(crate) struct LimitOptions {
     /// Least distance between any two contacts, millimetres.
@@ -101,21 +101,23 @@ pub(crate) struct LimitOptions {
     /// Largest distance between any two contacts, millimetres.
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(crate) reach: Option<f64>,
-    /// Part of the surface that contacts may touch: X,Y,Z,DEGREES, the cone around a direction from
-    /// the centre. Several: in all of them.
+    /// Region of the surface that contacts may touch: those seen from the centre within DEGREES of the
+    /// direction X,Y,Z. If given several times, contacts must lie in all regions.
     #[arg(long, value_name = "X,Y,Z,DEGREES", allow_hyphen_values = true)]
     pub(crate) allow: Vec<String>,
-    /// Grasps must be closed under this smaller friction too.
+    /// Grasps must stay force-closed under this smaller friction coefficient.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) closed_at_friction: Option<f64>,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct AscendOptions {
-    /// A shape that `fit` wrote.
+    /// A shape file, as `moduli fit` writes it.
     pub(crate) shape: PathBuf,
-    /// grasps.json in the frame of the shape's cloud; contacts are projected to the surface.
+    /// A grasps.json in the frame of the shape's cloud. Contacts are projected to the surface along
+    /// their direction from the centre.
     pub(crate) grasps: PathBuf,
+    /// How the quality is raised.
     #[arg(long, value_enum, default_value_t = AscentScheme::Ours)]
     pub(crate) scheme: AscentScheme,
     #[command(flatten)]
@@ -126,29 +128,31 @@ pub(crate) struct AscendOptions {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum TransferScheme {
-    /// Adaptive stations, monotone ascents, recovery from poor ends.
+    /// Adaptive stations, monotone ascents, and a second search where the end is poor.
     Ours,
-    /// Eleven stations with 100 fixed steps each.
+    /// The paper's scheme: eleven stations with 100 fixed steps each.
     Paper,
-    /// The contacts keep their directions.
+    /// Keep the directions of the contacts, without an ascent.
     Naive,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct TransferOptions {
-    /// The shape that the grasps are on. Several, each with its grasps: from every one to every
-    /// other shape of --to, and -o is a folder, in which an interrupted run goes on.
+    /// The shape that the grasps are on. Given several times, with one grasps.json per shape, grasps go
+    /// from every shape to every other shape of --to; then -o is a folder, and an interrupted run is
+    /// resumed.
     #[arg(long, value_name = "SHAPE", required = true)]
     pub(crate) from: Vec<PathBuf>,
-    /// The shape that they are carried to; several as with --from.
+    /// The shape that the grasps are carried to; can be given several times.
     #[arg(long, value_name = "SHAPE", required = true)]
     pub(crate) to: Vec<PathBuf>,
-    /// grasps.json in the frame of the cloud of the shape they are on; as many as --from.
+    /// A grasps.json per --from, in the frame of the cloud of that shape.
     #[arg(required = true)]
     pub(crate) grasps: Vec<PathBuf>,
+    /// How grasps are carried over.
     #[arg(long, value_enum, default_value_t = TransferScheme::Ours)]
     pub(crate) scheme: TransferScheme,
-    /// Look for better ends even where the first is good; some seven times slower.
+    /// Search for better results even where the first one is good; about seven times slower.
     #[arg(long)]
     pub(crate) thorough: bool,
     #[command(flatten)]

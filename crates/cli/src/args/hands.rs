@@ -12,42 +12,43 @@ pub(crate) struct HandOptions {
     /// `sdh`, the built-in Schunk SDH, or the URDF of another hand.
     #[arg(long, value_name = "sdh|URDF", default_value = "sdh")]
     pub(crate) hand: PathBuf,
-    /// How the hand is used; by default the TOML beside the URDF, of the same name.
+    /// TOML that says how the hand is used; by default the one beside the URDF, with the same name.
     #[arg(long, value_name = "TOML")]
     pub(crate) spec: Option<PathBuf>,
-    /// Folder of `package://` meshes; by default that of the URDF.
+    /// Folder in which `package://` meshes are found; by default that of the URDF.
     #[arg(long, value_name = "DIR")]
     pub(crate) package_root: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct SynthesizeOptions {
-    /// A shape that `fit` wrote.
+    /// A shape file, as `moduli fit` writes it.
     pub(crate) shape: PathBuf,
     /// Folder for grasps.json, grasps.yaml and index.html; out/NAME by default.
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) hand: HandOptions,
-    /// Hand poses to try.
+    /// Number of hand poses to try.
     #[arg(long, default_value_t = 1400, value_parser = count_in::<1, 1_000_000>)]
     pub(crate) poses: usize,
-    /// Grasps to keep, the best.
+    /// Number of grasps to keep, the best.
     #[arg(long, default_value_t = 50, value_parser = count_in::<1, 1_000_000>)]
     pub(crate) keep: usize,
-    /// Quality below which a grasp counts as unstable. When absent, the convention decides: 0.01
-    /// under `paper`; under the others every force-closed grasp is stable.
+    /// Quality that a stable grasp must exceed. By default the convention decides: 0.01 under `paper`;
+    /// under the others every force-closed grasp is stable.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) least_quality: Option<f64>,
-    /// Power grasps: close past the tips until every link of a finger holds the object or its joints
-    /// are at their limits; all links that touch are contacts.
+    /// Power grasps: close until every link of a finger touches the object or its joints reach their
+    /// limits. Every link that touches is a contact.
     #[arg(long)]
     pub(crate) power: bool,
-    /// Distances from the surface to the hand's approach point to draw from, millimetres; by default
-    /// those of the hand's TOML, and for power grasps, which begin nearer, 0.7 of the least to the least.
+    /// Range of the distance between the surface and the hand's approach point, millimetres. Default: the
+    /// range of the hand's TOML; for power grasps, from 0.7 times its lower end to its lower end.
     #[arg(long, value_name = "MIN,MAX", allow_hyphen_values = true, value_parser = standoff)]
     pub(crate) standoff: Option<(f64, f64)>,
-    /// Pre-shape to close from; several: any of them. By default all of the hand.
+    /// Preshape from which the fingers close; can be given several times. By default all preshapes of
+    /// the hand.
     #[arg(long, value_name = "NAME")]
     pub(crate) preshape: Vec<String>,
     #[command(flatten)]
@@ -65,23 +66,24 @@ fn standoff(text: &str) -> Result<(f64, f64), String> {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum HandCommand {
-    /// What is wrong with a URDF and its TOML, and a page with pictures of the hand.
+    /// Check the URDF and the TOML of a hand, and write a page with pictures of it.
+    #[command(after_help = "Example: moduli hand check gripper.urdf gripper.toml -o gripper.html")]
     Check(HandCheckOptions),
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct HandCheckOptions {
-    /// The URDF, or `sdh`.
+    /// The URDF, or `sdh` for the built-in hand.
     pub(crate) urdf: PathBuf,
-    /// The TOML; by default the one beside the URDF, of the same name.
+    /// TOML that says how the hand is used; by default the one beside the URDF, with the same name.
     pub(crate) spec: Option<PathBuf>,
-    /// Folder of `package://` meshes; by default that of the URDF.
+    /// Folder in which `package://` meshes are found; by default that of the URDF.
     #[arg(long, value_name = "DIR")]
     pub(crate) package_root: Option<PathBuf>,
-    /// The page; out/NAME/hand.html by default.
+    /// File for the page; out/NAME/hand.html by default.
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
-    /// Diameter of the ball that the hand is tried on, millimetres.
+    /// Diameter of the ball on which the hand is tried, millimetres.
     #[arg(
         long,
         value_name = "MM",
@@ -93,7 +95,7 @@ pub(crate) struct HandCheckOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct GraspOptions {
-    /// A cloud; by default a built-in object that is in no library.
+    /// A cloud or a mesh; by default a built-in object that is not in the library.
     pub(crate) cloud: Option<PathBuf>,
     /// Folder for grasps.json, grasps.yaml and index.html; out/NAME by default.
     #[arg(short, long)]
@@ -104,19 +106,20 @@ pub(crate) struct GraspOptions {
     pub(crate) hand: HandOptions,
     #[command(flatten)]
     pub(crate) convention: ConventionOptions,
-    /// Library objects to transfer from, the nearest first.
+    /// Number of library objects to transfer from, the nearest ones.
     #[arg(long, default_value_t = 3, value_parser = count_in::<0, 1000>)]
     pub(crate) neighbours: usize,
-    /// Grasps to transfer from each of them.
+    /// Number of grasps to transfer from each of them.
     #[arg(long, default_value_t = 4, value_parser = count_in::<0, 1000>)]
     pub(crate) transfers: usize,
-    /// Hand poses to try afresh.
+    /// Number of hand poses to try in the synthesis.
     #[arg(long, default_value_t = 700, value_parser = count_in::<0, 1_000_000>)]
     pub(crate) poses: usize,
-    /// Starts of the search for a hand that reaches a transferred grasp; 0 for none.
+    /// Number of random starts of the search for a hand pose that meets the contacts of a transferred
+    /// grasp; 0 for no search.
     #[arg(long, default_value_t = 12, value_parser = count_in::<0, 10_000>)]
     pub(crate) reach_starts: usize,
-    /// Grasps to keep of each kind.
+    /// Number of grasps to keep of each kind, transferred and synthesized.
     #[arg(long, default_value_t = 12, value_parser = count_in::<1, 10_000>)]
     pub(crate) keep: usize,
 }

@@ -17,10 +17,10 @@ pub(crate) enum Model {
 
 #[derive(Debug, Args)]
 pub(crate) struct FitOptions {
-    /// Clouds or meshes.
+    /// Clouds or meshes: .ply, .pcd, .xyz, .csv, .obj, .stl or .off.
     #[arg(required = true)]
     pub(crate) clouds: Vec<PathBuf>,
-    /// Where to write the shape; a folder when there are several clouds.
+    /// File for the shape, or folder for the shapes of several clouds.
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
     /// Kind of surface.
@@ -35,40 +35,43 @@ pub(crate) struct FitOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct EvalOptions {
-    /// A shape that `fit` wrote.
+    /// A shape file, as `moduli fit` writes it.
     pub(crate) shape: PathBuf,
-    /// Directions, N×3 in .npy; unit vectors.
+    /// Directions from the centre: unit vectors, N×3 in .npy.
     #[arg(long)]
     pub(crate) directions: PathBuf,
-    /// Result, N×7 in .npy: radius, tangential gradient of the radius, outward unit normal.
+    /// File for the result, .npy. Radial shapes, N×7: radius, tangential gradient of the radius (3),
+    /// outward unit normal (3). Spherical shapes, N×9: point in the frame of the cloud (3), outward unit
+    /// normal (3), mean curvature, the two principal curvatures (1/m, positive where convex).
     #[arg(short, long)]
     pub(crate) output: PathBuf,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct MeshOptions {
-    /// A shape that `fit` wrote.
+    /// A shape file, as `moduli fit` writes it.
     pub(crate) shape: PathBuf,
-    /// The mesh, as PLY, in the frame of the cloud.
+    /// File for the mesh, PLY in the frame of the cloud.
     #[arg(short, long)]
     pub(crate) output: PathBuf,
-    /// Circles of latitude.
+    /// Number of circles of latitude.
     #[arg(long, default_value_t = 100, value_parser = count_in::<3, 4000>)]
     pub(crate) rows: usize,
-    /// Points on each.
+    /// Number of points on each circle of latitude.
     #[arg(long, default_value_t = 100, value_parser = count_in::<3, 4000>)]
     pub(crate) columns: usize,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct DistanceOptions {
-    /// Shapes that `fit` wrote; with one, its distances to the built-in library.
+    /// Shape files. With several: all pairwise distances; with one: its distances to the objects of the
+    /// built-in library.
     #[arg(required = true)]
     pub(crate) shapes: Vec<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct InfoOptions {
-    /// A shape, a library, grasps.json or a cloud.
+    /// A shape, a library, a grasps.json, a cloud or a mesh.
     pub(crate) file: PathBuf,
 }

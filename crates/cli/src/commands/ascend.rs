@@ -1,4 +1,4 @@
-//! `moduli ascend`: grasps on an object, made better.
+//! `moduli ascend`: raises the quality of grasps on their object.
 
 use std::time::Instant;
 
@@ -24,7 +24,7 @@ pub(crate) fn run(options: &AscendOptions, common: &Common) -> Result<(), Failur
     let constraints = limits::constraints(&options.limits, &objective)?;
     if options.scheme == AscentScheme::Paper && !constraints.is_empty() {
         return Err(Failure::usage(
-            "the paper's ascent knows no limits; use --scheme ours",
+            "--scheme paper does not support limits; use --scheme ours",
         ));
     }
     let movement = Movement {

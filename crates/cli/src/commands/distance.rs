@@ -1,4 +1,4 @@
-//! `moduli distance`: how far shapes are from each other.
+//! `moduli distance`: distances between surfaces in the space of radial functions.
 
 use moduli::Library;
 use moduli::records::stored_coefficients;

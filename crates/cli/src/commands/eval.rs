@@ -1,4 +1,4 @@
-//! `moduli eval`: a surface at given directions.
+//! `moduli eval`: evaluates a surface at given directions.
 
 use moduli::{Object, SphericalObject};
 use serde::Serialize;

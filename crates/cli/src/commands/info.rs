@@ -1,4 +1,4 @@
-//! `moduli info`: what a file holds.
+//! `moduli info`: describes a file.
 
 use moduli::SphericalObject;
 use moduli::records::{StoredShapeError, stored_shape};

@@ -1,4 +1,4 @@
-//! `moduli mesh`: a shape as triangles, in the frame of its cloud.
+//! `moduli mesh`: writes a surface as a triangle mesh in the frame of its cloud.
 
 use crate::args::MeshOptions;
 use crate::failure::Failure;

@@ -54,7 +54,8 @@ struct Row {
 
 pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failure> {
     let named = input::convention(&options.convention)?;
-    let (grasps, rule) = grasps::read_grasps(&options.grasps)?;
+    let asked = options.convention.convention.as_ref().map(|_| &named);
+    let (grasps, rule) = grasps::read_grasps(&options.grasps, asked)?;
     let convention = convention(options, named, rule)?;
     let start = Instant::now();
     let path = &options.grasps;
@@ -113,8 +114,8 @@ fn convention(
         (Some(rule), None) => input::changed(rule, said)?,
         _ => named,
     };
-    // FRoGGeR's own frames. With another torque length the number is no system's own, and frames are
-    // those of every convention.
+    // FRoGGeR's own tangent frames. With another torque length the number belongs to no system, and the
+    // frames are those of every convention.
     if said.convention.as_deref() == Some("frogger") && said.torque_length.is_none() {
         convention.tangent = TangentRule::Projected(Vector3::new(1.2, 2.3, 3.4));
     }
@@ -132,7 +133,7 @@ fn contact_model(options: &QualityOptions, convention: &Convention) -> ContactMo
     }
 }
 
-/// One grasp's number and the interval that holds it.
+/// The number of one grasp and the interval that contains it.
 fn measured(
     model: &GraspModel<'_>,
     options: &QualityOptions,
@@ -179,7 +180,7 @@ fn warnings(rows: &[Row]) -> Vec<String> {
     match rows.iter().position(|row| !row.converged) {
         Some(first) => vec![format!(
             "{wide} of {} intervals are wider than asked for (the first is grasp {first}); \
-             their quality is the proved lower end",
+             for these the quality is the proved lower bound",
             rows.len()
         )],
         None => Vec::new(),

@@ -94,7 +94,7 @@ fn between<'a>(from: &'a Object, to: &'a Object, convention: &'a Convention) -> 
 fn prepare(options: &TransferOptions, objective: &Objective) -> Result<Scheme, Failure> {
     let constraints = limits::constraints(&options.limits, objective)?;
     if options.scheme != TransferScheme::Ours && !constraints.is_empty() {
-        return Err(Failure::usage("only --scheme ours knows limits"));
+        return Err(Failure::usage("only --scheme ours supports limits"));
     }
     Ok(match options.scheme {
         TransferScheme::Ours => {

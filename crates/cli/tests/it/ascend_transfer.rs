@@ -306,7 +306,7 @@ fn many_transfers_go_on_where_they_were_interrupted() {
         &["-o DIR"],
     );
     let two = ["grasps.json", "grasps.json", "-o", "all"];
-    refused(&with(&two), 2, &["1 shapes --from and 2 files"]);
+    refused(&with(&two), 2, &["--from: 1, files of grasps: 2"]);
     let twice = ["--to", "ball.shape", "grasps.json", "-o", "all"];
     refused(&with(&twice), 2, &["two shapes are named ball"]);
 }

@@ -1,8 +1,8 @@
-//! `moduli quality --all`: every metric in a table with named columns.
+//! `moduli quality`: every metric in a table with named columns, and the convention of a file.
 
 use tempfile::TempDir;
 
-use crate::common::{moduli, stdout};
+use crate::common::{fitted, moduli, stdout};
 
 /// Three contacts at 0°, 120° and 240° on the unit circle, pressing to its centre, as a CSV row.
 fn symmetric() -> String {
@@ -66,4 +66,51 @@ fn all_metrics_stand_in_named_columns() {
         round["rows"][0][at].is_null()
     };
     assert!(absent("volume") && absent("min_weight") && !absent("linf"));
+}
+
+#[test]
+fn a_file_is_measured_under_its_own_convention() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    fitted(here, "egg", [0.035, 0.030, 0.045], [0.5, 0.0, 0.2]);
+    let json = |arguments: &[&str]| -> serde_json::Value {
+        serde_json::from_str(&stdout(&moduli(here, arguments))).unwrap()
+    };
+    // Their centres are the mean of the cloud, the centroid, the origin, and the origin.
+    for convention in ["paper", "graspit", "openrave", "unit"] {
+        let found = json(&[
+            "synthesize",
+            "egg.shape",
+            "--convention",
+            convention,
+            "--poses",
+            "60",
+            "--json",
+            "-o",
+            convention,
+        ]);
+        assert!(
+            found["stable"].as_u64().unwrap() > 0,
+            "{convention}: {found}"
+        );
+        let file = format!("{convention}/grasps.json");
+        let measured = json(&["quality", &file, "--json"]);
+        assert_eq!(measured["convention"], convention);
+        let text = std::fs::read(here.join(&file)).unwrap();
+        let written: serde_json::Value = serde_json::from_slice(&text).unwrap();
+        let best = written["grasps"][0]["quality"].as_f64().unwrap();
+        let again = measured["best"].as_f64().unwrap();
+        assert!(
+            (again - best).abs() <= 1e-9,
+            "{convention}: {again} or {best}"
+        );
+    }
+    let other = json(&[
+        "quality",
+        "paper/grasps.json",
+        "--convention",
+        "dexnet",
+        "--json",
+    ]);
+    assert_eq!(other["convention"], "dexnet");
 }

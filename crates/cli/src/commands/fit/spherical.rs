@@ -105,14 +105,14 @@ fn points(path: &Path, options: &FitOptions, common: &Common) -> Result<PointClo
     if matches!(loaded.geometry, Geometry::Mesh(_)) {
         return Err(Failure::input(
             path,
-            "is a mesh, of which points are drawn at random; --model spherical needs a cloud whose points the directions belong to",
+            "the file is a mesh, from which points are sampled at random; --model spherical needs a cloud with one direction per point",
         ));
     }
     if loaded.dropped > 0 {
         return Err(Failure::input(
             path,
             format!(
-                "{} rows are not finite, so the rows of the directions do not match; remove them from both files",
+                "{} rows are not finite, so the directions do not match the points; remove these rows from both files",
                 loaded.dropped
             ),
         ));

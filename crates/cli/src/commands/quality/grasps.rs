@@ -2,17 +2,23 @@
 
 use std::path::Path;
 
-use grasp::{Contact, Convention, Grasp};
+use grasp::{CentreRule, Contact, Convention, Grasp};
 use nalgebra::{Point3, UnitVector3, Vector3};
 
 use crate::failure::Failure;
 use crate::input;
 
-/// Normals whose length is within this of one are normalised.
+/// Normals whose length is within this of 1 are made unit vectors.
 const NEARLY_UNIT: f64 = 0.01;
 
 /// The grasps of a file, and the convention that it names if it names one.
-pub(super) fn read_grasps(path: &Path) -> Result<(Vec<Grasp>, Option<Convention>), Failure> {
+///
+/// The centre of torques comes with each row of numbers. In a `grasps.json` it is the one that the
+/// `asked` convention names, or that of the file where none was asked for.
+pub(super) fn read_grasps(
+    path: &Path,
+    asked: Option<&Convention>,
+) -> Result<(Vec<Grasp>, Option<Convention>), Failure> {
     let mut rule = None;
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
     let grasps = match extension {
@@ -27,19 +33,19 @@ pub(super) fn read_grasps(path: &Path) -> Result<(Vec<Grasp>, Option<Convention>
         }
         "csv" => read_csv(path)?,
         "json" => {
-            let (grasps, convention) = read_json(path)?;
+            let (grasps, convention) = read_json(path, asked)?;
             rule = Some(convention);
             grasps
         }
         _ => {
             return Err(Failure::input(
                 path,
-                "expected grasps in a .json, .npy or .csv file",
+                "expected a file of grasps whose name ends in .json, .npy or .csv",
             ));
         }
     };
     if grasps.is_empty() {
-        return Err(Failure::input(path, "holds no grasps"));
+        return Err(Failure::input(path, "there are no grasps in the file"));
     }
     Ok((grasps, rule))
 }
@@ -90,7 +96,7 @@ fn from_row(path: &Path, row: usize, cells: &[f64]) -> Result<Grasp, Failure> {
         .map_err(|e| Failure::input(path, format!("row {row}: {e}")))
 }
 
-/// Comma separated rows; a first row of words is a header.
+/// Comma-separated rows; a first row without any number is a header.
 fn read_csv(path: &Path) -> Result<Vec<Grasp>, Failure> {
     let text = String::from_utf8(input::read(path)?)
         .map_err(|_| Failure::input(path, "not a text file"))?;
@@ -121,11 +127,16 @@ fn read_csv(path: &Path) -> Result<Vec<Grasp>, Failure> {
     Ok(grasps)
 }
 
-/// Our own grasps.json with its convention; torques are taken about the object's centre.
-fn read_json(path: &Path) -> Result<(Vec<Grasp>, Convention), Failure> {
+/// The grasps of a `grasps.json`, and its convention.
+fn read_json(path: &Path, asked: Option<&Convention>) -> Result<(Vec<Grasp>, Convention), Failure> {
     let file = input::grasps(path)?;
     let convention = moduli::records::convention(&file.convention)
         .map_err(|e| Failure::input(path, format!("convention `{}`: {e}", file.convention.name)))?;
+    let centre = match asked.unwrap_or(&convention).centre {
+        CentreRule::CloudMean => Point3::from(file.object.centre_m),
+        CentreRule::CentreOfMass => Point3::from(file.object.centre_of_mass_m),
+        CentreRule::ObjectOrigin | CentreRule::Given => Point3::origin(),
+    };
     let grasps = file
         .grasps
         .iter()
@@ -140,7 +151,7 @@ fn read_json(path: &Path) -> Result<(Vec<Grasp>, Convention), Failure> {
                     inward_normal: unit_normal(Vector3::from(*n)),
                 })
                 .collect();
-            Grasp::new(contacts, Point3::from(file.object.centre_m))
+            Grasp::new(contacts, centre)
                 .map_err(|e| Failure::input(path, format!("grasp {i}: {e}")))
         })
         .collect::<Result<_, _>>()?;

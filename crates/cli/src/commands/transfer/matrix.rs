@@ -72,18 +72,20 @@ pub(super) fn run(options: &TransferOptions, common: &Common) -> Result<(), Fail
     let start = Instant::now();
     let Some(folder) = &options.moved.output else {
         return Err(Failure::usage(
-            "several shapes need a folder for the results: -o DIR",
+            "several shapes need a folder for the results; add -o DIR",
         ));
     };
     if options.moved.trace.is_some() {
-        return Err(Failure::usage("--trace is for one pair of shapes"));
+        return Err(Failure::usage("--trace works for one pair of shapes only"));
     }
     let convention = input::convention(&options.moved.convention)?;
     let sources = sources(options)?;
     let targets = distinct(&options.to)?;
     let pairs = pairs(&sources, &targets, folder, options, &convention)?;
     if pairs.is_empty() {
-        return Err(Failure::usage("--from and --to name the same shape alone"));
+        return Err(Failure::usage(
+            "--from and --to name the same single shape; expected two different ones",
+        ));
     }
     let table = folder.join(TABLE);
     let results: Vec<&PathBuf> = pairs
@@ -111,7 +113,7 @@ pub(super) fn run(options: &TransferOptions, common: &Common) -> Result<(), Fail
 fn sources(options: &TransferOptions) -> Result<Vec<Source>, Failure> {
     if options.from.len() != options.grasps.len() {
         return Err(Failure::usage(format!(
-            "{} shapes --from and {} files of grasps; expected one file for each, in the same order",
+            "shapes given with --from: {}, files of grasps: {}; expected one file per shape, in the same order",
             options.from.len(),
             options.grasps.len()
         )));
