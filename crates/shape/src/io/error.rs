@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::ply::PlyError;
+use super::ply_error::PlyError;
 
 /// A file format for clouds or meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
