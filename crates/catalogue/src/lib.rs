@@ -30,6 +30,11 @@ static LIBRARY: LazyLock<Vec<CatalogueObject>> = LazyLock::new(library::build);
 static UNSEEN: LazyLock<Vec<CatalogueObject>> = LazyLock::new(unseen::build);
 
 /// The twelve library objects S1 to S12, in this order.
+///
+/// ```
+/// let ids: Vec<&str> = catalogue::library_objects().iter().map(|o| o.id).collect();
+/// assert_eq!((ids.len(), ids[0], ids[11]), (12, "S1", "S12"));
+/// ```
 pub fn library_objects() -> &'static [CatalogueObject] {
     &LIBRARY
 }

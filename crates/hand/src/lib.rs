@@ -4,6 +4,20 @@
 //! is both, checked. [`synthesize`] samples poses around a surface, closes the fingers
 //! and ranks the grasps (paper, Sec. IV-C). The palm frame is the root link's; lengths
 //! in metres, angles in radians.
+//!
+//! ```
+//! use hand::Hand;
+//!
+//! let hand = Hand::schunk_sdh()?;
+//! assert_eq!(hand.fingers().len(), 3);
+//! let names: Vec<&str> = hand.preshapes().iter().map(|p| p.name.as_str()).collect();
+//! assert_eq!(names, ["parallel", "spread"]);
+//!
+//! // The collision model with the fingers in the first pre-shape, one mesh per link.
+//! let meshes = hand::hand_meshes(&hand, &hand.preshapes()[0].joints)?;
+//! assert!(!meshes.is_empty());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod alignment;
 mod check;

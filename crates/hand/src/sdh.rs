@@ -43,6 +43,12 @@ impl Hand {
 
     /// The Schunk SDH that moduli carries, see [`schunk_sdh`].
     ///
+    /// ```
+    /// let hand = hand::Hand::schunk_sdh()?;
+    /// assert_eq!(hand.model().driven_count(), 7);
+    /// # Ok::<(), hand::LoadError>(())
+    /// ```
+    ///
     /// # Errors
     /// The carried files are not usable, which a test excludes.
     pub fn schunk_sdh() -> Result<Self, LoadError> {

@@ -14,6 +14,22 @@
 //! the offending place otherwise. The same input gives the same bytes.
 //!
 //! This crate recomputes nothing and knows no shape, hand or quality.
+//!
+//! ```
+//! use report::{GraspPage, Mesh, grasp_page};
+//!
+//! let page = GraspPage {
+//!     title: "tetrahedron".to_owned(),
+//!     mesh: Mesh {
+//!         vertices: vec![[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1], [-0.1, -0.1, -0.1]],
+//!         triangles: vec![[0, 1, 2], [0, 1, 3], [1, 2, 3], [0, 2, 3]],
+//!     },
+//!     ..GraspPage::default()
+//! };
+//! let html = grasp_page(&page)?;
+//! assert!(html.starts_with("<!DOCTYPE html>") && html.len() < 2_000_000);
+//! # Ok::<(), report::ReportError>(())
+//! ```
 
 mod bars;
 mod chart;

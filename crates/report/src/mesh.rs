@@ -16,6 +16,16 @@ impl Mesh {
     /// Appends another mesh as a separate piece.
     ///
     /// Useful to join the boxes and cylinders of a hand into one mesh. Cost O(other).
+    ///
+    /// ```
+    /// let triangle = report::Mesh {
+    ///     vertices: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+    ///     triangles: vec![[0, 1, 2]],
+    /// };
+    /// let mut both = triangle.clone();
+    /// both.append(&triangle);
+    /// assert_eq!(both.triangles, [[0, 1, 2], [3, 4, 5]]);
+    /// ```
     pub fn append(&mut self, other: &Mesh) {
         let offset = self.vertices.len() as u32;
         self.vertices.extend_from_slice(&other.vertices);

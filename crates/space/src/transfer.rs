@@ -92,6 +92,21 @@ pub struct TransferEnd<'a> {
 
 /// A pair of objects between which grasps are carried, and how quality is measured.
 ///
+/// ```
+/// use grasp::Convention;
+/// use nalgebra::Point3;
+/// use shape::{RadialField, RadialShape};
+/// use space::{Transfer, TransferEnd};
+///
+/// let [small, large] = [0.03, 0.05].map(|r| RadialShape::sphere(4, r).map(RadialField::new));
+/// let (small, large) = (small?, large?);
+/// let end = |surface| TransferEnd { surface, object_origin: Point3::origin() };
+/// let rule = Convention::paper();
+/// let pair = Transfer::new(end(&small), end(&large), &rule);
+/// assert_eq!(pair.stations(10)?.len(), 11);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// The convention is a rule: it is resolved on every shape γ(t) along the way, with the origin
 /// (1−t) o₁ + t o₂, so that qualities on the source belong to the source and those on the target to
 /// the target. The shapes along the way are made once per pair and number of intervals, when a scheme

@@ -112,6 +112,15 @@ impl Coefficients {
     }
 
     /// ‖β₁ − β₂‖ = (∫_{S²} |f₁ − f₂|²)^{1/2}, degrees may differ.
+    ///
+    /// ```
+    /// use sph::Coefficients;
+    ///
+    /// let (a, b) = (Coefficients::constant(3, 0.03), Coefficients::constant(3, 0.05));
+    /// // A constant function c has the single coefficient c √(4π).
+    /// let expected = 0.02 * (4.0 * std::f64::consts::PI).sqrt();
+    /// assert!((a.distance(&b) - expected).abs() < 1e-15);
+    /// ```
     pub fn distance(&self, other: &Self) -> f64 {
         let shared = self.values.len().min(other.values.len());
         let inside = self.values[..shared].iter().zip(&other.values[..shared]);
