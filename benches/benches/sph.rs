@@ -5,7 +5,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::Vector3;
 use sph::direction::even_directions;
-use sph::regression::{Penalty, Samples, Settings, fit};
+use sph::regression::{Gram, Method, Penalty, Samples, gram};
 use sph::rotation::rotate;
 use sph::{Basis, Coefficients, Direction, Field, batch, bounds, index};
 
@@ -42,14 +42,15 @@ fn regression(c: &mut Criterion) {
     };
     let mut group = c.benchmark_group("fit 25,000 points, L = 50");
     group.sample_size(10);
-    let plain = Settings {
-        penalty: Some(Penalty::NONE),
-        ..Settings::of_degree(DEGREE)
-    };
-    group.bench_function("no penalty", |b| b.iter(|| fit(black_box(samples), &plain)));
-    let automatic = Settings::of_degree(DEGREE);
+    group.bench_function("no penalty", |b| {
+        b.iter(|| gram::fit(black_box(samples), DEGREE, Penalty::NONE));
+    });
     group.bench_function("automatic penalty", |b| {
-        b.iter(|| fit(black_box(samples), &automatic));
+        b.iter(|| {
+            let gram = Gram::new(black_box(samples), DEGREE)?;
+            let penalty = gram.choose_penalty(2)?;
+            gram.coefficients(samples, penalty, Method::Automatic)
+        });
     });
     group.finish();
 }

@@ -13,11 +13,12 @@ pub use jets::{jets, values_and_gradients};
 use crate::coefficients::Coefficients;
 use crate::direction::Direction;
 use crate::index;
+use crate::lanes::{Lanes, coordinates, multiply_complex};
 use crate::legendre::Legendre;
 
 /// Points that go through the recurrences together.
 const LANES: usize = 16;
-type Lane = [f64; LANES];
+type Lane = Lanes<LANES>;
 
 /// Points of one task of [`evaluate`].
 const CHUNK: usize = 256;
@@ -77,7 +78,7 @@ impl WithSimd for Evaluate<'_> {
             .chunks(LANES)
             .zip(self.out.chunks_mut(LANES))
         {
-            let [x, y, z] = lanes(points);
+            let [x, y, z] = coordinates(points);
             let (mut re, mut im) = ([1.0; LANES], [0.0; LANES]);
             let mut total = [0.0; LANES];
             for m in 0..=degree {
@@ -85,7 +86,7 @@ impl WithSimd for Evaluate<'_> {
                 for k in 0..LANES {
                     total[k] += cos[k] * re[k] + sin[k] * im[k];
                 }
-                turn(&mut re, &mut im, &x, &y);
+                multiply_complex(&mut re, &mut im, &x, &y);
             }
             out.copy_from_slice(&total[..out.len()]);
         }
@@ -132,12 +133,12 @@ impl WithSimd for Moments<'_> {
             .chunks(LANES)
             .zip(self.weights.chunks(LANES))
         {
-            let [x, y, z] = lanes(points);
+            let [x, y, z] = coordinates(points);
             let (mut re, mut im) = ([0.0; LANES], [0.0; LANES]);
             re[..weights.len()].copy_from_slice(weights);
             for m in 0..=degree {
                 add_order(self.legendre, m, &z, &re, &im, self.sums);
-                turn(&mut re, &mut im, &x, &y);
+                multiply_complex(&mut re, &mut im, &x, &y);
             }
         }
     }
@@ -172,26 +173,6 @@ fn add_lane(sum: &mut Lane, a: &Lane, b: &Lane) {
     for k in 0..LANES {
         sum[k] += a[k] * b[k];
     }
-}
-
-/// (re + i im) ← (re + i im)(x + i y).
-#[inline(always)]
-fn turn(re: &mut Lane, im: &mut Lane, x: &Lane, y: &Lane) {
-    for k in 0..LANES {
-        (re[k], im[k]) = (re[k] * x[k] - im[k] * y[k], re[k] * y[k] + im[k] * x[k]);
-    }
-}
-
-/// x, y, z of up to N points; missing points stand at the pole.
-#[inline(always)]
-fn lanes<const N: usize>(points: &[Direction]) -> [[f64; N]; 3] {
-    let mut out = [[0.0; N], [0.0; N], [1.0; N]];
-    for (k, p) in points.iter().enumerate() {
-        out[0][k] = p.x;
-        out[1][k] = p.y;
-        out[2][k] = p.z;
-    }
-    out
 }
 
 #[cfg(test)]

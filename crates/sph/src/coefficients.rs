@@ -143,8 +143,14 @@ impl Coefficients {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
+
+    /// A function with power in every harmonic, the same on every call.
+    pub(crate) fn some_coefficients(degree: usize) -> Coefficients {
+        let values = (0..index::count(degree)).map(|i| (i as f64 * 1.3).sin());
+        Coefficients::new(values.collect()).unwrap()
+    }
 
     #[test]
     fn refuses_wrong_lengths_and_nan() {

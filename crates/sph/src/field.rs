@@ -9,10 +9,10 @@ use pulp::{Arch, Simd, WithSimd};
 use crate::basis::Jet;
 use crate::coefficients::Coefficients;
 use crate::direction::Direction;
-use crate::fused::multiply_add;
+use crate::double_fourier::{DoubleFourier, FineGrid};
 use crate::kernel::TAPS;
+use crate::multiply_add::multiply_add;
 use crate::rotation::{cyclic, rotate};
-use crate::torus::{Torus, TorusGrid};
 
 /// Why fields do not combine.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -47,9 +47,9 @@ const LEAST_DEGREE: usize = 8;
 /// proved rests on a field. Memory: about 80 L² bytes a chart.
 #[derive(Clone, Debug)]
 pub struct Field {
-    torus: Torus,
+    fourier: DoubleFourier,
     /// The chart with its axis along z, and the one along x.
-    charts: [TorusGrid; 2],
+    charts: [FineGrid; 2],
     /// The constant part, which needs no grid.
     mean: f64,
     arch: Arch,
@@ -58,13 +58,13 @@ pub struct Field {
 impl Field {
     /// Builds both charts. Milliseconds at L = 50; L³ flops.
     pub fn new(beta: &Coefficients) -> Self {
-        let torus = Torus::new(beta.degree().max(LEAST_DEGREE));
-        let mut rest = beta.with_degree(torus.degree());
+        let fourier = DoubleFourier::new(beta.degree().max(LEAST_DEGREE));
+        let mut rest = beta.with_degree(fourier.degree());
         rest.as_mut_slice()[0] = 0.0;
         let turned = rotate(&rest, &cyclic());
         Self {
-            charts: [rest, turned].map(|b| torus.synthesis(b.as_slice())),
-            torus,
+            charts: [rest, turned].map(|b| fourier.synthesis(b.as_slice())),
+            fourier,
             mean: beta.get(0, 0) / (4.0 * std::f64::consts::PI).sqrt(),
             arch: Arch::new(),
         }
@@ -74,7 +74,7 @@ impl Field {
     ///
     /// At least 8, whatever the degree of the coefficients.
     pub fn degree(&self) -> usize {
-        self.torus.degree()
+        self.fourier.degree()
     }
 
     /// The field of Σ αᵢ fᵢ; all fields must share their degree.
@@ -131,14 +131,14 @@ impl Field {
     }
 
     fn steps_a_radian(&self) -> f64 {
-        self.torus.steps() as f64 / std::f64::consts::TAU
+        self.fourier.steps() as f64 / std::f64::consts::TAU
     }
 
     /// f without its mean, f_θ, f_φ, f_θθ, f_θφ, f_φφ in grid steps, up to the derivative PARTS − 1.
     fn read<const PARTS: usize>(&self, place: &Place) -> [f64; 6] {
         let n = self.steps_a_radian();
         self.arch.dispatch(Read::<PARTS> {
-            torus: &self.torus,
+            fourier: &self.fourier,
             grid: &self.charts[usize::from(place.tilted)].values,
             theta: place.sin.atan2(place.q.z) * n,
             phi: place.phi() * n,
@@ -221,7 +221,7 @@ fn unturned_jet(jet: &Jet) -> Jet {
 
 /// The window sums at one place, with derivatives per grid step.
 struct Read<'a, const PARTS: usize> {
-    torus: &'a Torus,
+    fourier: &'a DoubleFourier,
     grid: &'a [f64],
     theta: f64,
     phi: f64,
@@ -232,10 +232,10 @@ impl<const PARTS: usize> WithSimd for Read<'_, PARTS> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) -> [f64; 6] {
-        let (kernel, stride) = (self.torus.kernel(), self.torus.stride());
+        let (kernel, stride) = (self.fourier.kernel(), self.fourier.stride());
         let row = self.theta as usize;
         // Rounding may bring φ to one whole turn.
-        let column = (self.phi as usize).min(self.torus.steps() - 1);
+        let column = (self.phi as usize).min(self.fourier.steps() - 1);
         let along_theta = kernel.derivatives::<S, PARTS>(self.theta - row as f64 - 0.5);
         let along_phi = kernel.derivatives::<S, PARTS>(self.phi - column as f64 - 0.5);
         let mut totals = [[0.0; HALF]; 6];

@@ -262,14 +262,9 @@ fn legendre_and_derivative(n: usize, z: f64) -> (f64, f64) {
 mod tests {
     use super::*;
     use crate::basis::Basis;
+    use crate::coefficients::tests::some_coefficients;
     use crate::direction::SphericalCoords;
     use crate::fft::smooth_length;
-    use crate::index;
-
-    fn some_coefficients(degree: usize) -> Coefficients {
-        let values = (0..index::count(degree)).map(|i| (i as f64 * 1.3).sin());
-        Coefficients::new(values.collect()).unwrap()
-    }
 
     #[test]
     fn synthesis_agrees_with_point_sums() {

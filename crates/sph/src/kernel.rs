@@ -7,7 +7,7 @@
 
 use pulp::Simd;
 
-use crate::fused::multiply_add;
+use crate::multiply_add::multiply_add;
 
 /// Width of the window in grid points: sums are right to about 1e-14 on a grid twice as fine as needed.
 pub(crate) const TAPS: usize = 16;
@@ -16,7 +16,7 @@ pub(crate) const TAPS: usize = 16;
 pub(crate) const OVERSAMPLING: f64 = 2.0;
 
 /// Steps from the first tap's grid point to the one at or below the position.
-pub(crate) const REACH: usize = TAPS / 2 - 1;
+pub(crate) const TAPS_BEFORE: usize = TAPS / 2 - 1;
 
 /// One weight a tap.
 pub(crate) type Taps = [f64; TAPS];

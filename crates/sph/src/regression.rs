@@ -4,20 +4,16 @@ mod conjugate;
 mod dense;
 pub mod gram;
 mod lanczos;
-mod leverage;
 mod operator;
 pub mod penalty;
 mod points;
 pub mod qr;
 mod refine;
-mod robust;
 
-use crate::coefficients::Coefficients;
 use crate::direction::Direction;
 
 pub use gram::Gram;
 pub use penalty::Penalty;
-pub use robust::Robust;
 
 /// Samples fᵢ at directions pᵢ.
 #[derive(Clone, Copy, Debug)]
@@ -43,68 +39,6 @@ pub enum Method {
     Cholesky,
     /// Householder QR of the dense N × (L+1)² matrix: the reference.
     Qr,
-}
-
-/// What is fitted, and how.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings<'a> {
-    /// L.
-    pub degree: usize,
-    /// The penalty; chosen from the data (see [`Gram::choose_penalty`]) with power 2 when absent.
-    pub penalty: Option<Penalty>,
-    /// One weight ≥ 0 a sample; all 1 when absent.
-    pub weights: Option<&'a [f64]>,
-    /// How samples that contradict their neighbours lose weight; not at all when absent.
-    pub robust: Option<Robust>,
-    /// The solver.
-    pub method: Method,
-}
-
-impl Settings<'_> {
-    /// Automatic penalty and method, no weights, no outliers.
-    pub fn of_degree(degree: usize) -> Self {
-        Self {
-            degree,
-            penalty: None,
-            weights: None,
-            robust: None,
-            method: Method::Automatic,
-        }
-    }
-}
-
-/// A fitted function and what led to it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Fitted {
-    /// β.
-    pub coefficients: Coefficients,
-    /// The penalty used.
-    pub penalty: Penalty,
-    /// The weights used; absent when all are 1.
-    pub weights: Option<Vec<f64>>,
-    /// How often the weights were changed and the fit repeated.
-    pub rounds: usize,
-}
-
-/// argmin Σᵢ wᵢ (h(pᵢ) − fᵢ)² + Σ λ (l(l+1))^s β_{lm}² over h of degree L (Sec. II-C of the paper).
-pub fn fit(samples: Samples, settings: &Settings) -> Result<Fitted, RegressionError> {
-    if let Some(robust) = &settings.robust {
-        return robust::fit(samples, settings, robust);
-    }
-    let gram = match settings.weights {
-        Some(weights) => Gram::weighted(samples, weights, settings.degree)?,
-        None => Gram::new(samples, settings.degree)?,
-    };
-    let penalty = match settings.penalty {
-        Some(penalty) => penalty,
-        None => gram.choose_penalty(2)?,
-    };
-    Ok(Fitted {
-        coefficients: gram.coefficients(samples, penalty, settings.method)?,
-        penalty,
-        weights: settings.weights.map(<[f64]>::to_vec),
-        rounds: 0,
-    })
 }
 
 /// Why a regression has no answer.

@@ -51,12 +51,8 @@ pub fn heat_flow(beta: &Coefficients, sigma: f64) -> Coefficients {
 mod tests {
     use super::*;
     use crate::batch;
+    use crate::coefficients::tests::some_coefficients;
     use crate::direction::even_directions;
-
-    fn some_coefficients(degree: usize) -> Coefficients {
-        let values = (0..index::count(degree)).map(|i| (i as f64 * 1.3).sin());
-        Coefficients::new(values.collect()).unwrap()
-    }
 
     #[test]
     fn the_turned_function_has_the_turned_values() {

@@ -11,10 +11,10 @@ use rayon::prelude::*;
 
 use crate::coefficients::Coefficients;
 use crate::direction::Direction;
-use crate::fused::multiply_add;
+use crate::double_fourier::{DoubleFourier, FineGrid};
 use crate::index;
 use crate::kernel::{TAPS, Taps};
-use crate::torus::{Torus, TorusGrid};
+use crate::multiply_add::multiply_add;
 
 /// Points handled by one task of [`Scattered::evaluate`].
 const CHUNK: usize = 2048;
@@ -76,15 +76,15 @@ impl Scattered {
     ///
     /// Errors are about 1e-14 of the largest |f|. About 900 flops a point and L³ for the grid.
     pub fn evaluate(&self, beta: &Coefficients) -> Vec<f64> {
-        let torus = Torus::new(beta.degree());
-        let grid = torus.synthesis(beta.as_slice());
+        let fourier = DoubleFourier::new(beta.degree());
+        let grid = fourier.synthesis(beta.as_slice());
         let mut sorted = vec![0.0; self.len()];
         sorted
             .par_chunks_mut(CHUNK)
             .zip(self.turns.par_chunks(CHUNK))
             .for_each(|(out, turns)| {
                 Arch::new().dispatch(Interpolate {
-                    torus: &torus,
+                    fourier: &fourier,
                     grid: &grid,
                     turns,
                     out,
@@ -102,10 +102,10 @@ impl Scattered {
     /// `weights` has one entry a point.
     pub fn moments(&self, weights: &[f64], degree: usize) -> Coefficients {
         assert_eq!(self.len(), weights.len(), "one weight a point");
-        let torus = Torus::new(degree);
-        let grid = self.spread(&torus, &self.sorted(weights));
+        let fourier = DoubleFourier::new(degree);
+        let grid = self.spread(&fourier, &self.sorted(weights));
         let mut out = Coefficients::zeros(degree);
-        out.as_mut_slice().copy_from_slice(&torus.analysis(grid));
+        out.as_mut_slice().copy_from_slice(&fourier.analysis(grid));
         debug_assert_eq!(out.as_slice().len(), index::count(degree));
         out
     }
@@ -117,8 +117,8 @@ impl Scattered {
     }
 
     /// Every point's weight, spread over its grid neighbours; weights in the order of the tiles.
-    fn spread(&self, torus: &Torus, weights: &[f64]) -> TorusGrid {
-        let (stride, n) = (torus.stride(), torus.steps());
+    fn spread(&self, fourier: &DoubleFourier, weights: &[f64]) -> FineGrid {
+        let (stride, n) = (fourier.stride(), fourier.steps());
         let group = (2 * BANDS * OWNED_ROWS).div_ceil(n).min(BANDS);
         let row = |band: usize| band.min(BANDS) * n / (2 * BANDS);
         let parts: Vec<Vec<f64>> = (0..BANDS.div_ceil(group))
@@ -128,7 +128,7 @@ impl Scattered {
                 let mut values = vec![0.0; (row(end) - row(begin) + 1 + TAPS) * stride];
                 let slots = self.bands[begin]..self.bands[end];
                 Arch::new().dispatch(Spread {
-                    torus,
+                    fourier,
                     turns: &self.turns[slots.clone()],
                     weights: &weights[slots],
                     first: row(begin),
@@ -137,14 +137,14 @@ impl Scattered {
                 values
             })
             .collect();
-        let mut values = vec![0.0; torus.rows() * stride];
+        let mut values = vec![0.0; fourier.rows() * stride];
         for (task, part) in parts.iter().enumerate() {
             let start = row(task * group) * stride;
             for (sum, p) in values[start..].iter_mut().zip(part) {
                 *sum += p;
             }
         }
-        TorusGrid { values }
+        FineGrid { values }
     }
 }
 
@@ -172,8 +172,8 @@ struct Footprint {
 
 impl Footprint {
     #[inline(always)]
-    fn new<S: Simd>(torus: &Torus, turns: &[f64; 2]) -> Self {
-        let n = torus.steps();
+    fn new<S: Simd>(fourier: &DoubleFourier, turns: &[f64; 2]) -> Self {
+        let n = fourier.steps();
         let x = turns[0] * n as f64;
         let y = turns[1] * n as f64;
         // Rounding may bring φ to one whole turn; the last column then serves with u = ½.
@@ -182,15 +182,15 @@ impl Footprint {
         Self {
             row,
             column,
-            theta: torus.kernel().weights::<S>(x - row as f64 - 0.5),
-            phi: torus.kernel().weights::<S>(y - column as f64 - 0.5),
+            theta: fourier.kernel().weights::<S>(x - row as f64 - 0.5),
+            phi: fourier.kernel().weights::<S>(y - column as f64 - 0.5),
         }
     }
 }
 
 struct Interpolate<'a> {
-    torus: &'a Torus,
-    grid: &'a TorusGrid,
+    fourier: &'a DoubleFourier,
+    grid: &'a FineGrid,
     turns: &'a [[f64; 2]],
     out: &'a mut [f64],
 }
@@ -200,9 +200,9 @@ impl WithSimd for Interpolate<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
-        let stride = self.torus.stride();
+        let stride = self.fourier.stride();
         for (turns, out) in self.turns.iter().zip(self.out) {
-            let window = Footprint::new::<S>(self.torus, turns);
+            let window = Footprint::new::<S>(self.fourier, turns);
             let start = window.row * stride + window.column;
             let rows = self.grid.values[start..].chunks(stride);
             let mut sums = [0.0; TAPS];
@@ -223,7 +223,7 @@ impl WithSimd for Interpolate<'_> {
 
 /// The adjoint of [`Interpolate`], onto the rows of one task.
 struct Spread<'a> {
-    torus: &'a Torus,
+    fourier: &'a DoubleFourier,
     turns: &'a [[f64; 2]],
     weights: &'a [f64],
     /// First row of the task.
@@ -236,9 +236,9 @@ impl WithSimd for Spread<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
-        let stride = self.torus.stride();
+        let stride = self.fourier.stride();
         for (turns, weight) in self.turns.iter().zip(self.weights) {
-            let mut window = Footprint::new::<S>(self.torus, turns);
+            let mut window = Footprint::new::<S>(self.fourier, turns);
             for p in &mut window.phi {
                 *p *= weight;
             }

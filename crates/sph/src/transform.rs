@@ -4,8 +4,8 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::fft::{Complex, Fft, LANES, smooth_length};
-use crate::ladder::{Ladder, Rung};
-use crate::rings::{Pairs, add_analysis, add_up, synthesis};
+use crate::ring_pairs::{RingPairs, add_analysis, add_up, synthesis};
+use crate::two_step::{Folded, TwoStep};
 
 /// Whether rings and longitudes suit the functions below: ring j mirrors ring n−1−j, and the
 /// longitudes are a smooth number that tells all orders apart.
@@ -18,8 +18,8 @@ pub(crate) fn suits(rings: &[(f64, f64)], longitudes: usize, degree: usize) -> b
 }
 
 /// Eight pairs of rings from pair number `first` on; missing ones stand on the equator.
-fn pairs(rings: &[(f64, f64)], first: usize) -> Pairs {
-    let mut out = Pairs {
+fn pairs(rings: &[(f64, f64)], first: usize) -> RingPairs {
+    let mut out = RingPairs {
         z: [0.0; LANES],
         sin: [1.0; LANES],
     };
@@ -31,18 +31,18 @@ fn pairs(rings: &[(f64, f64)], first: usize) -> Pairs {
 
 /// Values of Σ β Y, ring after ring.
 pub(crate) fn to_rings(rings: &[(f64, f64)], longitudes: usize, beta: &[f64]) -> Vec<f64> {
-    let ladder = Ladder::new(beta.len().isqrt() - 1);
+    let two_step = TwoStep::new(beta.len().isqrt() - 1);
     let fft = Fft::new(longitudes);
-    let rungs = &ladder.fold(beta);
+    let folded = &two_step.fold(beta);
     let count = rings.len().div_ceil(2);
     let blocks: Vec<Vec<Complex>> = (0..count.div_ceil(LANES))
         .into_par_iter()
         .map(|block| {
             Arch::new().dispatch(ToRings {
-                ladder: &ladder,
+                two_step: &two_step,
                 fft: &fft,
                 pairs: pairs(rings, block * LANES),
-                rungs,
+                folded,
             })
         })
         .collect();
@@ -72,10 +72,10 @@ pub(crate) fn from_rings(
     values: &[f64],
     degree: usize,
 ) -> Vec<f64> {
-    let ladder = Ladder::new(degree);
+    let two_step = TwoStep::new(degree);
     let fft = Fft::new(longitudes);
     let count = rings.len().div_ceil(2);
-    let parts: Vec<Vec<Rung>> = (0..count.div_ceil(LANES))
+    let parts: Vec<Vec<Folded>> = (0..count.div_ceil(LANES))
         .into_par_iter()
         .map(|block| {
             let first = block * LANES;
@@ -92,25 +92,25 @@ pub(crate) fn from_rings(
                     }
                 }
             }
-            let mut rungs = vec![[0.0; 4]; ladder.len()];
+            let mut folded = vec![[0.0; 4]; two_step.len()];
             Arch::new().dispatch(FromRings {
-                ladder: &ladder,
+                two_step: &two_step,
                 fft: &fft,
                 pairs: pairs(rings, first),
-                rungs: &mut rungs,
+                folded: &mut folded,
                 data: &mut data,
             });
-            rungs
+            folded
         })
         .collect();
-    ladder.unfold(&add_up(&parts, ladder.len()))
+    two_step.unfold(&add_up(&parts, two_step.len()))
 }
 
 struct ToRings<'a> {
-    ladder: &'a Ladder,
+    two_step: &'a TwoStep,
     fft: &'a Fft,
-    pairs: Pairs,
-    rungs: &'a [Rung],
+    pairs: RingPairs,
+    folded: &'a [Folded],
 }
 
 impl WithSimd for ToRings<'_> {
@@ -121,10 +121,10 @@ impl WithSimd for ToRings<'_> {
         let mut values = vec![Complex::ZERO; self.fft.length()];
         let mut scratch = values.clone();
         synthesis::<S>(
-            self.ladder,
+            self.two_step,
             self.fft,
             &self.pairs,
-            self.rungs,
+            self.folded,
             &mut values,
             &mut scratch,
         );
@@ -133,10 +133,10 @@ impl WithSimd for ToRings<'_> {
 }
 
 struct FromRings<'a> {
-    ladder: &'a Ladder,
+    two_step: &'a TwoStep,
     fft: &'a Fft,
-    pairs: Pairs,
-    rungs: &'a mut [Rung],
+    pairs: RingPairs,
+    folded: &'a mut [Folded],
     data: &'a mut [Complex],
 }
 
@@ -147,10 +147,10 @@ impl WithSimd for FromRings<'_> {
     fn with_simd<S: Simd>(self, _simd: S) {
         let mut scratch = vec![Complex::ZERO; self.fft.length()];
         add_analysis::<S>(
-            self.ladder,
+            self.two_step,
             self.fft,
             &self.pairs,
-            self.rungs,
+            self.folded,
             self.data,
             &mut scratch,
         );

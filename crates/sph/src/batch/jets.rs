@@ -8,16 +8,16 @@ use nalgebra::{Matrix3, Vector3};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::lanes;
 use crate::basis::{Ambient, Harmonic, Jet};
 use crate::coefficients::Coefficients;
 use crate::direction::{Direction, project_tangent};
-use crate::fused::multiply_add;
+use crate::lanes::{Lanes, coordinates, multiply_complex};
 use crate::legendre::{Legendre, derivative_factor};
+use crate::multiply_add::multiply_add;
 
 /// Points that go through the recurrences together: their sums fill the registers.
 const LANES: usize = 4;
-type Lane = [f64; LANES];
+type Lane = Lanes<LANES>;
 
 /// Points of one task.
 const CHUNK: usize = 64;
@@ -105,7 +105,7 @@ impl<const PARTS: usize> WithSimd for Sums<'_, PARTS> {
             .chunks(LANES)
             .zip(self.out.chunks_mut(LANES))
         {
-            let [x, y, z] = lanes(points);
+            let [x, y, z] = coordinates(points);
             let mut powers = [[[0.0; LANES]; 2]; 3];
             powers[0][0] = [1.0; LANES];
             let mut totals = [[0.0; LANES]; TERMS];
@@ -115,7 +115,9 @@ impl<const PARTS: usize> WithSimd for Sums<'_, PARTS> {
                 rest = later;
                 let sums = order_sums::<S, PARTS>(self.legendre, n, &z, column);
                 add_order(&mut totals, n, &sums, &powers);
-                powers = [turned(&powers[0], &x, &y), powers[0], powers[1]];
+                powers = [powers[0], powers[0], powers[1]];
+                let [re, im] = &mut powers[0];
+                multiply_complex(re, im, &x, &y);
             }
             for (k, ambient) in out.iter_mut().enumerate() {
                 *ambient = gathered(&totals.map(|lane| lane[k]));
@@ -218,17 +220,6 @@ fn gathered(t: &[f64; TERMS]) -> Ambient {
         gradient: Vector3::new(t[1], t[2], t[3]),
         hessian: Matrix3::new(t[4], t[5], t[6], t[5], -t[4], t[7], t[6], t[7], t[8]),
     }
-}
-
-/// (re + i im)(x + i y).
-#[inline(always)]
-fn turned([re, im]: &[Lane; 2], x: &Lane, y: &Lane) -> [Lane; 2] {
-    let mut out = [[0.0; LANES]; 2];
-    for k in 0..LANES {
-        out[0][k] = re[k] * x[k] - im[k] * y[k];
-        out[1][k] = re[k] * y[k] + im[k] * x[k];
-    }
-    out
 }
 
 #[cfg(test)]

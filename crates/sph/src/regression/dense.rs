@@ -22,7 +22,7 @@ pub(super) struct Dense {
 pub(super) struct Factor<'a> {
     /// The lower triangle; what is above it has no meaning.
     lower: Mat<f64>,
-    pub(super) order: &'a Order,
+    order: &'a Order,
     /// Largest pivot over smallest: never above the condition number of the square root.
     pub(super) pivot_ratio: f64,
 }
@@ -88,33 +88,14 @@ impl Factor<'_> {
         let stack = MemStack::new(&mut memory);
         solve::solve_in_place(self.lower.as_ref(), right.as_mut(), shares(), stack);
     }
-
-    /// M⁻¹ in full, in [`Order`].
-    pub(super) fn ordered_inverse(&self) -> Mat<f64> {
-        let size = self.order.positions.len();
-        let mut inner = Mat::<f64>::identity(size, size);
-        self.solve_in_place(&mut inner);
-        inner
-    }
-
-    /// M⁻¹ in full, positions l²+l+m.
-    pub(super) fn inverse(&self) -> Mat<f64> {
-        let inner = self.ordered_inverse();
-        let size = inner.nrows();
-        let mut rows = vec![0; size];
-        for (row, &position) in self.order.positions.iter().enumerate() {
-            rows[position] = row;
-        }
-        Mat::from_fn(size, size, |i, j| inner[(rows[i], rows[j])])
-    }
 }
 
 /// Unknowns by order: for each m the cosines l = m … L, then, for m > 0, the sines.
-pub(super) struct Order {
+struct Order {
     /// Position l²+l+m of every row.
     positions: Vec<usize>,
     /// First row of order m's cosines; the sines follow after L−m+1 rows.
-    pub(super) starts: Vec<usize>,
+    starts: Vec<usize>,
 }
 
 impl Order {
@@ -216,7 +197,7 @@ fn assemble(density: &Coefficients, degree: usize, order: &Order) -> Mat<f64> {
 }
 
 /// P̄_l^m at every ring, one rings × (L−m+1) matrix an order.
-pub(super) fn legendre_tables(degree: usize, nodes: &[f64]) -> Vec<Mat<f64>> {
+fn legendre_tables(degree: usize, nodes: &[f64]) -> Vec<Mat<f64>> {
     let legendre = Legendre::new(degree);
     let mut column = vec![0.0; degree + 1];
     (0..=degree)

@@ -10,12 +10,10 @@ mod likelihood;
 
 use std::sync::OnceLock;
 
-use faer::Mat;
 use rayon::prelude::*;
 
 use super::conjugate::{self, Limits, Outcome, dot};
 use super::dense::{Dense, Factor};
-use super::leverage::quadratic_form;
 use super::operator::Multiplier;
 use super::points::Points;
 use super::{Method, Penalty, RegressionError, Samples, qr};
@@ -116,17 +114,7 @@ impl Gram {
     ///
     /// `samples` are those the system was assembled from.
     pub fn solve(&self, samples: Samples, penalty: Penalty) -> Result<Solution, RegressionError> {
-        self.solve_by(samples, penalty, Method::Automatic)
-    }
-
-    /// [`Gram::solve`] by a given method.
-    pub fn solve_by(
-        &self,
-        samples: Samples,
-        penalty: Penalty,
-        method: Method,
-    ) -> Result<Solution, RegressionError> {
-        let coefficients = self.coefficients(samples, penalty, method)?;
+        let coefficients = self.coefficients(samples, penalty, Method::Automatic)?;
         Ok(Solution {
             condition: self.condition(penalty)?,
             coefficients,
@@ -197,36 +185,6 @@ impl Gram {
         } else {
             MOST_ITERATIONS
         }
-    }
-
-    /// (YᵀWY + penalty)⁻¹, rows and columns at positions l²+l+m: the covariance of β for samples
-    /// whose noise has variance 1/wᵢ; scale by the noise's variance.
-    ///
-    /// From the dense factor: (L+1)⁶ flops and 24 (L+1)⁴ bytes.
-    pub fn covariance(&self, penalty: Penalty) -> Result<Mat<f64>, RegressionError> {
-        penalty.check()?;
-        Ok(self.factor(penalty)?.inverse())
-    }
-
-    /// wᵢ yᵢᵀ (YᵀWY + penalty)⁻¹ yᵢ for every sample: the diagonal of the hat matrix, how much each
-    /// sample determines its own fitted value, between 0 and 1; the sum is the degrees of freedom.
-    ///
-    /// From the dense factor, as [`Gram::covariance`]; then all points are read from one function of
-    /// degree 2L. `samples` are those the system was assembled from.
-    pub fn leverage(
-        &self,
-        samples: Samples,
-        penalty: Penalty,
-    ) -> Result<Vec<f64>, RegressionError> {
-        penalty.check()?;
-        let factor = self.factor(penalty)?;
-        let inverse = factor.ordered_inverse();
-        let form = quadratic_form(inverse.as_ref(), self.degree, factor.order);
-        let mut out = self.points.evaluate(samples.directions, form.as_slice());
-        for (h, w) in out.iter_mut().zip(self.weights.iter().flatten()) {
-            *h *= w;
-        }
-        Ok(out)
     }
 
     /// The λ that maximises the restricted marginal likelihood of the samples (REML).
@@ -351,14 +309,17 @@ impl Gram {
     }
 }
 
-/// [`Gram::new`] and [`Gram::solve`] in one.
+/// The unweighted fit of degree L alone: [`Gram::new`], then [`Gram::coefficients`] by
+/// [`Method::Automatic`].
+///
+/// # Errors
+/// As [`Gram::new`] and [`Gram::coefficients`].
 pub fn fit(
     samples: Samples,
     degree: usize,
     penalty: Penalty,
 ) -> Result<Coefficients, RegressionError> {
-    let solution = Gram::new(samples, degree)?.solve(samples, penalty)?;
-    Ok(solution.coefficients)
+    Gram::new(samples, degree)?.coefficients(samples, penalty, Method::Automatic)
 }
 
 fn check_weights(weights: &[f64], samples: usize) -> Result<(), RegressionError> {

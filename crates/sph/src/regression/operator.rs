@@ -6,19 +6,19 @@ use rayon::prelude::*;
 use crate::coefficients::Coefficients;
 use crate::fft::{Complex, Fft, LANES, smooth_length};
 use crate::grid::gauss_legendre;
-use crate::ladder::{Ladder, Rung};
-use crate::rings::{Pairs, add_analysis, add_up, synthesis};
+use crate::ring_pairs::{RingPairs, add_analysis, add_up, synthesis};
+use crate::two_step::{Folded, TwoStep};
 
-/// Pairs of rings that one task owns, in units of [`LANES`]; fixed, so that sums never depend on
+/// RingPairs of rings that one task owns, in units of [`LANES`]; fixed, so that sums never depend on
 /// the number of threads.
 const BLOCKS_A_TASK: usize = 4;
 
 /// b ↦ Sᵀ diag(ω g) S b with S the degree-L synthesis on a Gauss–Legendre grid: the coefficients up
 /// to degree L of g times the function b, whenever the grid is exact for their product.
 pub(super) struct Multiplier {
-    ladder: Ladder,
+    two_step: TwoStep,
     fft: Fft,
-    blocks: Vec<Pairs>,
+    blocks: Vec<RingPairs>,
     /// ω g of every block, longitude after longitude; north real, south imaginary.
     factors: Vec<Complex>,
 }
@@ -37,15 +37,15 @@ impl Multiplier {
         let fft = Fft::new(smooth_length(longitudes.max(2 * g.degree() + 1)));
         let n = fft.length();
         let (blocks, weights) = ring_pairs(rings);
-        let ladder = Ladder::new(g.degree());
-        let rungs = ladder.fold(g.as_slice());
+        let two_step = TwoStep::new(g.degree());
+        let folded = two_step.fold(g.as_slice());
         let mut factors = vec![Complex::ZERO; blocks.len() * n];
         for ((pairs, weights), factors) in blocks.iter().zip(&weights).zip(factors.chunks_mut(n)) {
             Arch::new().dispatch(Synthesis {
-                ladder: &ladder,
+                two_step: &two_step,
                 fft: &fft,
                 pairs,
-                rungs: &rungs,
+                folded: &folded,
                 values: factors,
             });
             let cell = std::f64::consts::TAU / n as f64;
@@ -57,7 +57,7 @@ impl Multiplier {
             }
         }
         Self {
-            ladder: Ladder::new(degree),
+            two_step: TwoStep::new(degree),
             fft,
             blocks,
             factors,
@@ -67,28 +67,28 @@ impl Multiplier {
     /// The product's coefficients. About 6·rings·L² flops and two Fourier transforms a ring.
     pub(super) fn apply(&self, beta: &[f64]) -> Vec<f64> {
         let n = self.fft.length();
-        let rungs = &self.ladder.fold(beta);
+        let folded = &self.two_step.fold(beta);
         let tasks = self.blocks.par_chunks(BLOCKS_A_TASK);
-        let parts: Vec<Vec<Rung>> = tasks
+        let parts: Vec<Vec<Folded>> = tasks
             .zip(self.factors.par_chunks(BLOCKS_A_TASK * n))
             .map(|(blocks, factors)| {
-                let mut out = vec![[0.0; 4]; rungs.len()];
+                let mut out = vec![[0.0; 4]; folded.len()];
                 Arch::new().dispatch(Apply {
                     operator: self,
                     blocks,
                     factors,
-                    rungs,
+                    folded,
                     out: &mut out,
                 });
                 out
             })
             .collect();
-        self.ladder.unfold(&add_up(&parts, self.ladder.len()))
+        self.two_step.unfold(&add_up(&parts, self.two_step.len()))
     }
 }
 
 /// Gauss–Legendre rings in mirrored pairs, and their weights (north real, south imaginary).
-fn ring_pairs(rings: usize) -> (Vec<Pairs>, Vec<Complex>) {
+fn ring_pairs(rings: usize) -> (Vec<RingPairs>, Vec<Complex>) {
     let (nodes, weights) = gauss_legendre(rings);
     let pairs = rings.div_ceil(2);
     let blocks = pairs.div_ceil(LANES);
@@ -96,7 +96,7 @@ fn ring_pairs(rings: usize) -> (Vec<Pairs>, Vec<Complex>) {
     let mut shares = Vec::with_capacity(blocks);
     for b in 0..blocks {
         // Lanes beyond the last pair stand on the equator with weight zero.
-        let mut place = Pairs {
+        let mut place = RingPairs {
             z: [0.0; LANES],
             sin: [1.0; LANES],
         };
@@ -117,10 +117,10 @@ fn ring_pairs(rings: usize) -> (Vec<Pairs>, Vec<Complex>) {
 }
 
 struct Synthesis<'a> {
-    ladder: &'a Ladder,
+    two_step: &'a TwoStep,
     fft: &'a Fft,
-    pairs: &'a Pairs,
-    rungs: &'a [Rung],
+    pairs: &'a RingPairs,
+    folded: &'a [Folded],
     values: &'a mut [Complex],
 }
 
@@ -131,10 +131,10 @@ impl WithSimd for Synthesis<'_> {
     fn with_simd<S: Simd>(self, _simd: S) {
         let mut scratch = vec![Complex::ZERO; self.fft.length()];
         synthesis::<S>(
-            self.ladder,
+            self.two_step,
             self.fft,
             self.pairs,
-            self.rungs,
+            self.folded,
             self.values,
             &mut scratch,
         );
@@ -143,10 +143,10 @@ impl WithSimd for Synthesis<'_> {
 
 struct Apply<'a> {
     operator: &'a Multiplier,
-    blocks: &'a [Pairs],
+    blocks: &'a [RingPairs],
     factors: &'a [Complex],
-    rungs: &'a [Rung],
-    out: &'a mut [Rung],
+    folded: &'a [Folded],
+    out: &'a mut [Folded],
 }
 
 impl WithSimd for Apply<'_> {
@@ -154,19 +154,19 @@ impl WithSimd for Apply<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
-        let (ladder, fft) = (&self.operator.ladder, &self.operator.fft);
+        let (two_step, fft) = (&self.operator.two_step, &self.operator.fft);
         let n = fft.length();
         let mut values = vec![Complex::ZERO; n];
         let mut scratch = vec![Complex::ZERO; n];
         for (pairs, factors) in self.blocks.iter().zip(self.factors.chunks(n)) {
-            synthesis::<S>(ladder, fft, pairs, self.rungs, &mut values, &mut scratch);
+            synthesis::<S>(two_step, fft, pairs, self.folded, &mut values, &mut scratch);
             for (value, factor) in values.iter_mut().zip(factors) {
                 for k in 0..LANES {
                     value.re[k] *= factor.re[k];
                     value.im[k] *= factor.im[k];
                 }
             }
-            add_analysis::<S>(ladder, fft, pairs, self.out, &mut values, &mut scratch);
+            add_analysis::<S>(two_step, fft, pairs, self.out, &mut values, &mut scratch);
         }
     }
 }

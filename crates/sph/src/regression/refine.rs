@@ -10,6 +10,10 @@ use crate::index;
 const MOST_CORRECTIONS: usize = 6;
 const SETTLED: f64 = 1e-6;
 
+/// Corrections below this share of the mean are rounding: the values of a constant function differ
+/// from their mean by no more.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
 /// Where (ρ̃⁻¹ YᵀWY) has at most this condition number, sums on the grid lose no more than three of
 /// their fourteen digits on the way to β, and the samples need not be asked again.
 const WELL_POSED: Fine = Fine {
@@ -57,13 +61,15 @@ impl Gram {
         mut beta: Vec<f64>,
         solve: impl Fn(&[f64]) -> Result<Vec<f64>, RegressionError>,
     ) -> Result<Coefficients, RegressionError> {
+        let rounding = ROUNDING * self.mean.abs() * (4.0 * std::f64::consts::PI).sqrt();
         for _ in 0..MOST_CORRECTIONS {
             let step = solve(&self.gradient(samples, penalty, &beta))?;
             for (b, s) in beta.iter_mut().zip(&step) {
                 *b += s;
             }
-            // Each correction is wrong by about the share that the one before was of β.
-            if dot(&step, &step) <= SETTLED * SETTLED * dot(&beta, &beta) {
+            // The relative error of each correction is about the size of the previous one relative to β.
+            let settled = SETTLED * SETTLED * dot(&beta, &beta);
+            if dot(&step, &step) <= settled.max(rounding * rounding) {
                 return self.finish(beta);
             }
         }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Rotation3, Vector3};
 use sph::direction::{even_directions, retract};
 use sph::grid::RingGrid;
-use sph::regression::{Gram, Method, Penalty, Samples, Settings, fit};
+use sph::regression::{Gram, Method, Penalty, Samples};
 use sph::rotation::rotate;
 use sph::scattered::Scattered;
 use sph::{Basis, Coefficients, Direction, Field, Jet, batch, index};
@@ -120,14 +120,7 @@ fn regression(degree: usize, aspect: f64, method: Method) -> f64 {
         "aspect {aspect}: cond(Y) {:.0}",
         gram.condition(Penalty::NONE).unwrap()
     );
-    let by = |method: Method| {
-        let settings = Settings {
-            penalty: Some(Penalty::NONE),
-            method,
-            ..Settings::of_degree(degree)
-        };
-        fit(samples, &settings).unwrap().coefficients
-    };
+    let by = |method: Method| gram.coefficients(samples, Penalty::NONE, method).unwrap();
     let reference = by(Method::Qr);
     by(method).distance(&reference) / reference.distance(&Coefficients::zeros(0))
 }

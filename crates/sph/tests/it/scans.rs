@@ -4,7 +4,7 @@
 
 use nalgebra::Vector3;
 use sph::direction::direction_and_radius;
-use sph::regression::{Gram, Penalty, Robust, Samples, Settings, fit};
+use sph::regression::{Gram, Penalty, Samples};
 use sph::{Direction, batch};
 
 fn file(name: &str) -> Vec<u8> {
@@ -37,51 +37,6 @@ fn scan(name: &str) -> (Vec<Direction>, Vec<f64>) {
 
 fn rms(errors: impl Iterator<Item = f64> + Clone) -> f64 {
     (errors.clone().map(|e| e * e).sum::<f64>() / errors.count() as f64).sqrt()
-}
-
-#[test]
-#[ignore = "needs the scans of MODULI_DATA"]
-fn outliers_of_a_scan_are_set_aside() {
-    let (directions, values) = scan("sugar_box_outliers.ply");
-    let rows = String::from_utf8(file("sugar_box_outliers.outlier_rows.txt")).unwrap();
-    let mut clean = vec![true; values.len()];
-    for row in rows.split_whitespace() {
-        clean[row.parse::<usize>().unwrap()] = false;
-    }
-    let samples = Samples {
-        directions: &directions,
-        values: &values,
-    };
-    let settings = Settings {
-        robust: Some(Robust::default()),
-        ..Settings::of_degree(50)
-    };
-    let error = |settings: &Settings| {
-        let fitted = fit(samples, settings).unwrap();
-        let heights = batch::evaluate(&fitted.coefficients, &directions);
-        let errors: Vec<f64> = (0..values.len())
-            .filter(|&i| clean[i])
-            .map(|i| heights[i] - values[i])
-            .collect();
-        rms(errors.iter().copied())
-    };
-    // What a fit reaches that is told the outliers.
-    let (known_at, known): (Vec<Direction>, Vec<f64>) = (0..values.len())
-        .filter(|&i| clean[i])
-        .map(|i| (directions[i], values[i]))
-        .unzip();
-    let told = Samples {
-        directions: &known_at,
-        values: &known,
-    };
-    let told = fit(told, &Settings::of_degree(50)).unwrap();
-    let heights = batch::evaluate(&told.coefficients, &known_at);
-    let reachable = rms(heights.iter().zip(&known).map(|(h, v)| h - v));
-    let (robust, plain) = (error(&settings), error(&Settings::of_degree(50)));
-    eprintln!(
-        "RMS on the clean points: robust {robust:.3e}, told {reachable:.3e}, plain {plain:.3e} m"
-    );
-    assert!(robust <= 1.02 * reachable && robust < plain);
 }
 
 #[test]

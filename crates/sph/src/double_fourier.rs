@@ -6,31 +6,31 @@
 //! the window at any point is the function there, to the window's accuracy. The adjoint takes
 //! spread points to moments.
 
-mod passes;
+mod simd;
 
 use pulp::Arch;
 use rayon::prelude::*;
 
-use self::passes::{
+use self::simd::{
     AddDegrees, ModesFromRows, RingsFromRows, RowsFromModes, RowsFromRings, SumDegrees,
 };
 use crate::fft::{Complex, Fft, LANES, smooth_length};
-use crate::kernel::{Kernel, OVERSAMPLING, REACH, TAPS};
-use crate::ladder::{Ladder, Rung};
-use crate::rings::{OrderValues, Pairs, add_up};
+use crate::kernel::{Kernel, OVERSAMPLING, TAPS, TAPS_BEFORE};
+use crate::ring_pairs::{OrderValues, RingPairs, add_up};
+use crate::two_step::{Folded, TwoStep};
 
 /// Fine grid values: rows of equal θ from a little before the north pole to a little beyond the
 /// south pole, columns of equal φ with the first and last few repeated.
 #[derive(Clone, Debug)]
-pub(crate) struct TorusGrid {
+pub(crate) struct FineGrid {
     pub(crate) values: Vec<f64>,
 }
 
 /// Constants for one degree.
 #[derive(Clone, Debug)]
-pub(crate) struct Torus {
+pub(crate) struct DoubleFourier {
     degree: usize,
-    ladder: Ladder,
+    two_step: TwoStep,
     kernel: Kernel,
     /// Around the θ circle through the rings where harmonics are summed.
     coarse: Fft,
@@ -38,7 +38,7 @@ pub(crate) struct Torus {
     phi: Fft,
     /// 1 / transform of the window at mode k, for θ (with the coarse circle's 1/n) and for φ.
     corrections: [Vec<f64>; 2],
-    blocks: Vec<Pairs>,
+    blocks: Vec<RingPairs>,
 }
 
 /// Numbers (re, im) with rows of `stride`: modes m = 0 … D of every ring or row.
@@ -58,7 +58,7 @@ impl Modes {
     }
 }
 
-impl Torus {
+impl DoubleFourier {
     pub(crate) fn new(degree: usize) -> Self {
         let kernel = Kernel::new();
         let needed = (2 * degree + 1) as f64 * OVERSAMPLING;
@@ -74,14 +74,14 @@ impl Torus {
         let step = std::f64::consts::TAU / coarse as f64;
         let pairs = coarse / 4 + 1;
         let blocks = (0..pairs.div_ceil(LANES))
-            .map(|b| Pairs {
+            .map(|b| RingPairs {
                 z: std::array::from_fn(|k| (step * (b * LANES + k) as f64).cos()),
                 sin: std::array::from_fn(|k| (step * (b * LANES + k) as f64).sin()),
             })
             .collect();
         Self {
             degree,
-            ladder: Ladder::new(degree),
+            two_step: TwoStep::new(degree),
             kernel,
             coarse: Fft::new(coarse),
             theta: Fft::new(fine),
@@ -104,7 +104,7 @@ impl Torus {
         self.theta.length()
     }
 
-    /// Rows kept: θ from −REACH to half the circle + TAPS/2.
+    /// Rows kept: θ from −TAPS_BEFORE to half the circle + TAPS/2.
     pub(crate) fn rows(&self) -> usize {
         self.steps() / 2 + TAPS
     }
@@ -115,7 +115,7 @@ impl Torus {
     }
 
     /// The grid whose window sums are Σ β Y.
-    pub(crate) fn synthesis(&self, beta: &[f64]) -> TorusGrid {
+    pub(crate) fn synthesis(&self, beta: &[f64]) -> FineGrid {
         let rings = self.ring_modes(beta);
         let rows = self.row_modes(&rings);
         let mut values = vec![0.0; self.rows() * self.stride()];
@@ -124,17 +124,17 @@ impl Torus {
             .enumerate()
             .for_each(|(block, values)| {
                 Arch::new().dispatch(RowsFromModes {
-                    torus: self,
+                    fourier: self,
                     modes: &rows,
                     first: block * 2 * LANES,
                     values,
                 });
             });
-        TorusGrid { values }
+        FineGrid { values }
     }
 
-    /// The adjoint of [`Torus::synthesis`]: Σ grid value · (response of the grid to Y_{lm}).
-    pub(crate) fn analysis(&self, mut grid: TorusGrid) -> Vec<f64> {
+    /// The adjoint of [`DoubleFourier::synthesis`]: Σ grid value · (response of the grid to Y_{lm}).
+    pub(crate) fn analysis(&self, mut grid: FineGrid) -> Vec<f64> {
         let mut rows = Modes::zeros(self.rows(), self.mode_stride());
         let stride = rows.stride;
         grid.values
@@ -143,7 +143,7 @@ impl Torus {
             .zip(rows.im.par_chunks_mut(2 * LANES * stride))
             .for_each(|((values, re), im)| {
                 Arch::new().dispatch(ModesFromRows {
-                    torus: self,
+                    fourier: self,
                     values,
                     re,
                     im,
@@ -163,15 +163,15 @@ impl Torus {
 
     /// c_m − i s_m on the coarse rings, ring after ring; halved for m > 0.
     fn ring_modes(&self, beta: &[f64]) -> Modes {
-        let rungs = &self.ladder.fold(beta);
+        let folded = &self.two_step.fold(beta);
         let blocks: Vec<Vec<OrderValues>> = self
             .blocks
             .par_iter()
             .map(|pairs| {
                 Arch::new().dispatch(SumDegrees {
-                    ladder: &self.ladder,
+                    two_step: &self.two_step,
                     pairs,
-                    rungs,
+                    folded,
                 })
             })
             .collect();
@@ -199,13 +199,13 @@ impl Torus {
         (0..=last / 2).map(move |j| (j, j, last - j))
     }
 
-    /// Adds up rings · P̄_l^m; the adjoint of [`Torus::ring_modes`] without its halving.
+    /// Adds up rings · P̄_l^m; the adjoint of [`DoubleFourier::ring_modes`] without its halving.
     fn sum_rings(&self, rings: &Modes) -> Vec<f64> {
         let last = self.ring_count() - 1;
-        let parts: Vec<Vec<Rung>> = (0..self.blocks.len())
+        let parts: Vec<Vec<Folded>> = (0..self.blocks.len())
             .into_par_iter()
             .map(|block| {
-                let mut rungs = vec![[0.0; 4]; self.ladder.len()];
+                let mut folded = vec![[0.0; 4]; self.two_step.len()];
                 let mut values = vec![ZERO_ORDER; self.degree + 1];
                 for (j, north, south) in self.pair_list(last) {
                     if j / LANES != block {
@@ -223,15 +223,15 @@ impl Torus {
                     }
                 }
                 Arch::new().dispatch(AddDegrees {
-                    ladder: &self.ladder,
+                    two_step: &self.two_step,
                     pairs: &self.blocks[block],
                     values: &values,
-                    rungs: &mut rungs,
+                    folded: &mut folded,
                 });
-                rungs
+                folded
             })
             .collect();
-        self.ladder.unfold(&add_up(&parts, self.ladder.len()))
+        self.two_step.unfold(&add_up(&parts, self.two_step.len()))
     }
 
     /// From coarse rings to fine rows, order by order.
@@ -240,7 +240,7 @@ impl Torus {
             .into_par_iter()
             .map(|block| {
                 Arch::new().dispatch(RowsFromRings {
-                    torus: self,
+                    fourier: self,
                     rings,
                     first: block * LANES,
                 })
@@ -257,13 +257,13 @@ impl Torus {
         rows
     }
 
-    /// The adjoint of [`Torus::row_modes`].
+    /// The adjoint of [`DoubleFourier::row_modes`].
     fn rings_from_rows(&self, rows: &Modes) -> Modes {
         let columns: Vec<Vec<Complex>> = (0..rows.stride / LANES)
             .into_par_iter()
             .map(|block| {
                 Arch::new().dispatch(RingsFromRows {
-                    torus: self,
+                    fourier: self,
                     rows,
                     first: block * LANES,
                 })
@@ -284,7 +284,7 @@ impl Torus {
     #[inline(always)]
     fn circle_position(&self, row: usize) -> usize {
         let n = self.steps();
-        (row + n - REACH) % n
+        (row + n - TAPS_BEFORE) % n
     }
 
     /// Correction of θ mode k and order m.

@@ -11,25 +11,25 @@ use crate::legendre::Legendre;
 
 /// What stands before q_k: cosine and sine of the even degrees, then cosine and sine of z times the
 /// odd ones.
-pub(crate) type Rung = [f64; 4];
+pub(crate) type Folded = [f64; 4];
 
 /// The recurrences of all orders up to a degree.
 #[derive(Clone, Debug)]
-pub(crate) struct Ladder {
+pub(crate) struct TwoStep {
     degree: usize,
     /// P̄_m^m / sinᵐθ.
     first: Vec<f64>,
-    /// (A_k, B_k), order after order; as many as rungs.
+    /// (A_k, B_k), order after order; as many as folded.
     steps: Vec<(f64, f64)>,
     /// α_k.
     scales: Vec<f64>,
     /// (1/ε_{m+2k+1}, ε_{m+2k+2}); the first is zero where there is no such degree.
     links: Vec<(f64, f64)>,
-    /// Where each order begins, and the number of rungs.
+    /// Where each order begins, and the number of folded.
     starts: Vec<usize>,
 }
 
-impl Ladder {
+impl TwoStep {
     /// About L²/2 square roots.
     pub(crate) fn new(degree: usize) -> Self {
         let legendre = Legendre::new(degree + 2);
@@ -77,25 +77,25 @@ impl Ladder {
         self.degree
     }
 
-    /// Number of rungs of all orders.
+    /// Number of folded of all orders.
     pub(crate) fn len(&self) -> usize {
         self.steps.len()
     }
 
-    /// The rungs of order m.
+    /// The folded of order m.
     #[inline(always)]
-    pub(crate) fn rungs(&self, m: usize) -> std::ops::Range<usize> {
+    pub(crate) fn range(&self, m: usize) -> std::ops::Range<usize> {
         self.starts[m]..self.starts[m + 1]
     }
 
     /// q_0 without sinᵐθ, and the steps of order m.
     #[inline(always)]
     pub(crate) fn recurrence(&self, m: usize) -> (f64, &[(f64, f64)]) {
-        (self.first[m], &self.steps[self.rungs(m)])
+        (self.first[m], &self.steps[self.range(m)])
     }
 
     /// What stands before every q_k in Σ β P̄.
-    pub(crate) fn fold(&self, beta: &[f64]) -> Vec<Rung> {
+    pub(crate) fn fold(&self, beta: &[f64]) -> Vec<Folded> {
         let at = |l: usize, m: usize| {
             let centre = l * l + l;
             let sin = if m == 0 { 0.0 } else { beta[centre - m] };
@@ -104,7 +104,7 @@ impl Ladder {
         let mut out = vec![[0.0; 4]; self.len()];
         for m in 0..=self.degree {
             let mut above = [0.0; 2];
-            for (k, i) in self.rungs(m).enumerate().rev() {
+            for (k, i) in self.range(m).enumerate().rev() {
                 let l = m + 2 * k;
                 let (inverse, next) = self.links[i];
                 let even = at(l, m);
@@ -123,8 +123,8 @@ impl Ladder {
         out
     }
 
-    /// The adjoint of [`Ladder::fold`].
-    pub(crate) fn unfold(&self, rungs: &[Rung]) -> Vec<f64> {
+    /// The adjoint of [`TwoStep::fold`].
+    pub(crate) fn unfold(&self, folded: &[Folded]) -> Vec<f64> {
         let mut out = vec![0.0; index::count(self.degree)];
         for m in 0..=self.degree {
             let mut put = |l: usize, [cos, sin]: [f64; 2]| {
@@ -135,9 +135,9 @@ impl Ladder {
                 }
             };
             let mut below = [0.0; 2];
-            for (k, i) in self.rungs(m).enumerate() {
+            for (k, i) in self.range(m).enumerate() {
                 let l = m + 2 * k;
-                let scaled = rungs[i].map(|x| self.scales[i] * x);
+                let scaled = folded[i].map(|x| self.scales[i] * x);
                 put(l, [scaled[0], scaled[1]]);
                 if l < self.degree {
                     let (inverse, next) = self.links[i];
@@ -158,19 +158,19 @@ mod tests {
     #[test]
     fn rungs_sum_to_the_functions_and_unfold_is_the_adjoint() {
         for degree in [0, 1, 2, 3, 8, 9, 60] {
-            let ladder = Ladder::new(degree);
+            let two_step = TwoStep::new(degree);
             let legendre = Legendre::new(degree);
             let beta: Vec<f64> = (0..index::count(degree))
                 .map(|i| (1.3 * i as f64).sin())
                 .collect();
-            let rungs = ladder.fold(&beta);
+            let folded = two_step.fold(&beta);
             for m in 0..=degree {
                 for z in [-1.0, -0.3, 0.0, 0.8] {
-                    let (first, steps) = ladder.recurrence(m);
+                    let (first, steps) = two_step.recurrence(m);
                     let (mut before, mut here) = (0.0, first);
                     let (mut sum, mut size) = (0.0, 0.0);
-                    for (rung, (a, b)) in rungs[ladder.rungs(m)].iter().zip(steps) {
-                        sum += (rung[0] + z * rung[2]) * here;
+                    for (term, (a, b)) in folded[two_step.range(m)].iter().zip(steps) {
+                        sum += (term[0] + z * term[2]) * here;
                         (before, here) = (here, (a * z * z + b) * here - before);
                     }
                     let mut column = vec![0.0; degree - m + 1];
@@ -186,19 +186,19 @@ mod tests {
                     );
                 }
             }
-            // ⟨fold β, r⟩ = ⟨β, unfold r⟩ for rungs that a sum may have: no sine of order 0.
-            let mut other: Vec<Rung> = (0..ladder.len())
+            // ⟨fold β, r⟩ = ⟨β, unfold r⟩ for folded that a sum may have: no sine of order 0.
+            let mut other: Vec<Folded> = (0..two_step.len())
                 .map(|i| std::array::from_fn(|j| (0.7 * (4 * i + j) as f64).cos()))
                 .collect();
-            for rung in &mut other[ladder.rungs(0)] {
-                (rung[1], rung[3]) = (0.0, 0.0);
+            for term in &mut other[two_step.range(0)] {
+                (term[1], term[3]) = (0.0, 0.0);
             }
-            let left: f64 = rungs
+            let left: f64 = folded
                 .iter()
                 .zip(&other)
                 .map(|(a, b)| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>())
                 .sum();
-            let back = ladder.unfold(&other);
+            let back = two_step.unfold(&other);
             let right: f64 = back.iter().zip(&beta).map(|(a, b)| a * b).sum();
             assert!((left - right).abs() <= 1e-11 * (1.0 + left.abs()));
         }

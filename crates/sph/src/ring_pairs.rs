@@ -7,15 +7,16 @@
 use pulp::Simd;
 
 use crate::fft::{Complex, Fft, LANES, Sign};
-use crate::fused::multiply_add;
-use crate::ladder::{Ladder, Rung};
+use crate::lanes::{Lanes, multiply};
+use crate::multiply_add::multiply_add;
+use crate::two_step::{Folded, TwoStep};
 
-/// Eight numbers, one a pair of rings.
-pub(crate) type Lane = [f64; LANES];
+/// Eight numbers, one per pair of rings.
+pub(crate) type Lane = Lanes<LANES>;
 
 /// Eight pairs of rings at ±z; sin θ beside it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pairs {
+pub(crate) struct RingPairs {
     pub(crate) z: Lane,
     pub(crate) sin: Lane,
 }
@@ -28,7 +29,7 @@ pub(crate) struct OrderValues {
 }
 
 /// The sum of vectors, in their order.
-pub(crate) fn add_up(parts: &[Vec<Rung>], length: usize) -> Vec<Rung> {
+pub(crate) fn add_up(parts: &[Vec<Folded>], length: usize) -> Vec<Folded> {
     let mut sum = vec![[0.0; 4]; length];
     for part in parts {
         for (s, p) in sum.iter_mut().zip(part) {
@@ -40,32 +41,32 @@ pub(crate) fn add_up(parts: &[Vec<Rung>], length: usize) -> Vec<Rung> {
     sum
 }
 
-/// The sums over l of one order. `power` is sinᵐθ; `rungs` are all orders' as by [`Ladder::fold`].
+/// The sums over l of one order. `power` is sinᵐθ; `folded` are all orders' as by [`TwoStep::fold`].
 #[inline(always)]
 pub(crate) fn order_sums<S: Simd>(
-    ladder: &Ladder,
+    two_step: &TwoStep,
     m: usize,
     z: &Lane,
     power: &Lane,
-    rungs: &[Rung],
+    folded: &[Folded],
 ) -> OrderValues {
-    let rungs = &rungs[ladder.rungs(m)];
-    let (first, steps) = ladder.recurrence(m);
+    let folded = &folded[two_step.range(m)];
+    let (first, steps) = two_step.recurrence(m);
     let square = squares(z);
     let mut sums = [[0.0; LANES]; 4];
     let (mut before, mut here) = ([0.0; LANES], *power);
     for h in &mut here {
         *h *= first;
     }
-    let mut pairs = steps.chunks_exact(2).zip(rungs.chunks_exact(2));
-    for (steps, rungs) in &mut pairs {
-        add_scaled::<S>(&mut sums, &here, &rungs[0]);
+    let mut pairs = steps.chunks_exact(2).zip(folded.chunks_exact(2));
+    for (steps, folded) in &mut pairs {
+        add_scaled::<S>(&mut sums, &here, &folded[0]);
         step::<S>(&mut before, &here, &square, steps[0]);
-        add_scaled::<S>(&mut sums, &before, &rungs[1]);
+        add_scaled::<S>(&mut sums, &before, &folded[1]);
         step::<S>(&mut here, &before, &square, steps[1]);
     }
-    if rungs.len() % 2 == 1 {
-        add_scaled::<S>(&mut sums, &here, &rungs[rungs.len() - 1]);
+    if folded.len() % 2 == 1 {
+        add_scaled::<S>(&mut sums, &here, &folded[folded.len() - 1]);
     }
     let mut out = OrderValues {
         cos: [[0.0; LANES]; 2],
@@ -80,18 +81,18 @@ pub(crate) fn order_sums<S: Simd>(
     out
 }
 
-/// The adjoint of [`order_sums`]: adds Σ_rings value · q_k to `rungs`, for [`Ladder::unfold`].
+/// The adjoint of [`order_sums`]: adds Σ_rings value · q_k to `folded`, for [`TwoStep::unfold`].
 #[inline(always)]
 pub(crate) fn add_order<S: Simd>(
-    ladder: &Ladder,
+    two_step: &TwoStep,
     m: usize,
     z: &Lane,
     power: &Lane,
     values: &OrderValues,
-    rungs: &mut [Rung],
+    folded: &mut [Folded],
 ) {
-    let rungs = &mut rungs[ladder.rungs(m)];
-    let (first, steps) = ladder.recurrence(m);
+    let folded = &mut folded[two_step.range(m)];
+    let (first, steps) = two_step.recurrence(m);
     let square = squares(z);
     let (mut before, mut here) = ([0.0; LANES], *power);
     for h in &mut here {
@@ -104,15 +105,15 @@ pub(crate) fn add_order<S: Simd>(
         part[2] = z[k] * (values.cos[0][k] - values.cos[1][k]);
         part[3] = z[k] * (values.sin[0][k] - values.sin[1][k]);
     }
-    let odd = rungs.len() % 2 == 1;
-    let mut pairs = steps.chunks_exact(2).zip(rungs.chunks_exact_mut(2));
-    for (steps, rungs) in &mut pairs {
-        add_dots::<S>(&mut rungs[0], &parts, &here);
+    let odd = folded.len() % 2 == 1;
+    let mut pairs = steps.chunks_exact(2).zip(folded.chunks_exact_mut(2));
+    for (steps, folded) in &mut pairs {
+        add_dots::<S>(&mut folded[0], &parts, &here);
         step::<S>(&mut before, &here, &square, steps[0]);
-        add_dots::<S>(&mut rungs[1], &parts, &before);
+        add_dots::<S>(&mut folded[1], &parts, &before);
         step::<S>(&mut here, &before, &square, steps[1]);
     }
-    if let (true, Some(last)) = (odd, rungs.last_mut()) {
+    if let (true, Some(last)) = (odd, folded.last_mut()) {
         add_dots::<S>(last, &parts, &here);
     }
 }
@@ -126,7 +127,7 @@ fn squares(z: &Lane) -> Lane {
     out
 }
 
-/// before ← (a z² + b) here − before: the next rung stands in `before`.
+/// before ← (a z² + b) here − before: the next term stands in `before`.
 #[inline(always)]
 fn step<S: Simd>(before: &mut Lane, here: &Lane, square: &Lane, (a, b): (f64, f64)) {
     for k in 0..LANES {
@@ -136,8 +137,8 @@ fn step<S: Simd>(before: &mut Lane, here: &Lane, square: &Lane, (a, b): (f64, f6
 }
 
 #[inline(always)]
-fn add_scaled<S: Simd>(sums: &mut [Lane; 4], values: &Lane, rung: &Rung) {
-    for (sum, factor) in sums.iter_mut().zip(rung) {
+fn add_scaled<S: Simd>(sums: &mut [Lane; 4], values: &Lane, term: &Folded) {
+    for (sum, factor) in sums.iter_mut().zip(term) {
         for k in 0..LANES {
             sum[k] = multiply_add::<S>(values[k], *factor, sum[k]);
         }
@@ -147,8 +148,8 @@ fn add_scaled<S: Simd>(sums: &mut [Lane; 4], values: &Lane, rung: &Rung) {
 /// Adds Σ_k parts[k] values[k]: the four parts of a lane stand in one register, so that nothing has to
 /// be summed across one.
 #[inline(always)]
-fn add_dots<S: Simd>(rung: &mut Rung, parts: &[Rung; LANES], values: &Lane) {
-    let mut sums = [*rung, [0.0; 4]];
+fn add_dots<S: Simd>(term: &mut Folded, parts: &[Folded; LANES], values: &Lane) {
+    let mut sums = [*term, [0.0; 4]];
     for (k, part) in parts.iter().enumerate() {
         let sum = &mut sums[k % 2];
         for j in 0..4 {
@@ -156,25 +157,25 @@ fn add_dots<S: Simd>(rung: &mut Rung, parts: &[Rung; LANES], values: &Lane) {
         }
     }
     for j in 0..4 {
-        rung[j] = sums[0][j] + sums[1][j];
+        term[j] = sums[0][j] + sums[1][j];
     }
 }
 
 /// Values of Σ β Y on eight pairs of rings: north real, south imaginary, one element a longitude.
 #[inline(always)]
 pub(crate) fn synthesis<S: Simd>(
-    ladder: &Ladder,
+    two_step: &TwoStep,
     fft: &Fft,
-    pairs: &Pairs,
-    rungs: &[Rung],
+    pairs: &RingPairs,
+    folded: &[Folded],
     values: &mut [Complex],
     scratch: &mut [Complex],
 ) {
     let n = fft.length();
     values.fill(Complex::ZERO);
     let mut power = [1.0; LANES];
-    for m in 0..=ladder.degree() {
-        let sums = order_sums::<S>(ladder, m, &pairs.z, &power, rungs);
+    for m in 0..=two_step.degree() {
+        let sums = order_sums::<S>(two_step, m, &pairs.z, &power, folded);
         if m == 0 {
             values[0].re = sums.cos[0];
             values[0].im = sums.cos[1];
@@ -192,20 +193,20 @@ pub(crate) fn synthesis<S: Simd>(
     fft.run(Sign::Plus, values, scratch);
 }
 
-/// The adjoint of [`synthesis`]: adds Σ value · Y over the rings to `rungs`; `values` is used up.
+/// The adjoint of [`synthesis`]: adds Σ value · Y over the rings to `folded`; `values` is used up.
 #[inline(always)]
 pub(crate) fn add_analysis<S: Simd>(
-    ladder: &Ladder,
+    two_step: &TwoStep,
     fft: &Fft,
-    pairs: &Pairs,
-    rungs: &mut [Rung],
+    pairs: &RingPairs,
+    folded: &mut [Folded],
     values: &mut [Complex],
     scratch: &mut [Complex],
 ) {
     let n = fft.length();
     fft.run(Sign::Minus, values, scratch);
     let mut power = [1.0; LANES];
-    for m in 0..=ladder.degree() {
+    for m in 0..=two_step.degree() {
         let (up, down) = (&values[m], &values[(n - m) % n]);
         let mut sums = OrderValues {
             cos: [[0.0; LANES]; 2],
@@ -217,14 +218,7 @@ pub(crate) fn add_analysis<S: Simd>(
             sums.sin[0][k] = 0.5 * (down.im[k] - up.im[k]);
             sums.sin[1][k] = 0.5 * (up.re[k] - down.re[k]);
         }
-        add_order::<S>(ladder, m, &pairs.z, &power, &sums, rungs);
+        add_order::<S>(two_step, m, &pairs.z, &power, &sums, folded);
         multiply(&mut power, &pairs.sin);
-    }
-}
-
-#[inline(always)]
-pub(crate) fn multiply(a: &mut Lane, b: &Lane) {
-    for k in 0..LANES {
-        a[k] *= b[k];
     }
 }

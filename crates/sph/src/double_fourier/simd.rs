@@ -1,12 +1,13 @@
-//! The vectorised passes of a [`Torus`] transform, each with its adjoint.
+//! The vectorised passes of a [`DoubleFourier`] transform, each with its adjoint.
 
 use pulp::{Simd, WithSimd};
 
-use super::{Modes, Torus};
+use super::{DoubleFourier, Modes};
 use crate::fft::{Complex, LANES, Sign};
-use crate::kernel::REACH;
-use crate::ladder::{Ladder, Rung};
-use crate::rings::{Lane, OrderValues, Pairs, add_order, multiply, order_sums};
+use crate::kernel::TAPS_BEFORE;
+use crate::lanes::multiply;
+use crate::ring_pairs::{Lane, OrderValues, RingPairs, add_order, order_sums};
+use crate::two_step::{Folded, TwoStep};
 
 /// Eight orders at a place.
 #[inline(always)]
@@ -30,9 +31,9 @@ fn parities(first: usize) -> Lane {
 }
 
 pub(super) struct SumDegrees<'a> {
-    pub(super) ladder: &'a Ladder,
-    pub(super) pairs: &'a Pairs,
-    pub(super) rungs: &'a [Rung],
+    pub(super) two_step: &'a TwoStep,
+    pub(super) pairs: &'a RingPairs,
+    pub(super) folded: &'a [Folded],
 }
 
 impl WithSimd for SumDegrees<'_> {
@@ -41,14 +42,14 @@ impl WithSimd for SumDegrees<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) -> Self::Output {
         let mut power = [1.0; LANES];
-        let mut out = Vec::with_capacity(self.ladder.degree() + 1);
-        for m in 0..=self.ladder.degree() {
+        let mut out = Vec::with_capacity(self.two_step.degree() + 1);
+        for m in 0..=self.two_step.degree() {
             out.push(order_sums::<S>(
-                self.ladder,
+                self.two_step,
                 m,
                 &self.pairs.z,
                 &power,
-                self.rungs,
+                self.folded,
             ));
             multiply(&mut power, &self.pairs.sin);
         }
@@ -57,10 +58,10 @@ impl WithSimd for SumDegrees<'_> {
 }
 
 pub(super) struct AddDegrees<'a> {
-    pub(super) ladder: &'a Ladder,
-    pub(super) pairs: &'a Pairs,
+    pub(super) two_step: &'a TwoStep,
+    pub(super) pairs: &'a RingPairs,
     pub(super) values: &'a [OrderValues],
-    pub(super) rungs: &'a mut [Rung],
+    pub(super) folded: &'a mut [Folded],
 }
 
 impl WithSimd for AddDegrees<'_> {
@@ -70,7 +71,7 @@ impl WithSimd for AddDegrees<'_> {
     fn with_simd<S: Simd>(self, _simd: S) {
         let mut power = [1.0; LANES];
         for (m, values) in self.values.iter().enumerate() {
-            add_order::<S>(self.ladder, m, &self.pairs.z, &power, values, self.rungs);
+            add_order::<S>(self.two_step, m, &self.pairs.z, &power, values, self.folded);
             multiply(&mut power, &self.pairs.sin);
         }
     }
@@ -78,7 +79,7 @@ impl WithSimd for AddDegrees<'_> {
 
 /// Eight orders from coarse rings to fine rows.
 pub(super) struct RowsFromRings<'a> {
-    pub(super) torus: &'a Torus,
+    pub(super) fourier: &'a DoubleFourier,
     pub(super) rings: &'a Modes,
     pub(super) first: usize,
 }
@@ -88,8 +89,8 @@ impl WithSimd for RowsFromRings<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) -> Vec<Complex> {
-        let (torus, first) = (self.torus, self.first);
-        let (coarse, fine) = (torus.coarse.length(), torus.theta.length());
+        let (fourier, first) = (self.fourier, self.first);
+        let (coarse, fine) = (fourier.coarse.length(), fourier.theta.length());
         let mut circle = vec![Complex::ZERO; coarse];
         let parity = parities(first);
         for (j, slot) in circle.iter_mut().enumerate() {
@@ -100,23 +101,23 @@ impl WithSimd for RowsFromRings<'_> {
             }
         }
         let mut scratch = vec![Complex::ZERO; fine];
-        torus.coarse.run(Sign::Minus, &mut circle, &mut scratch);
+        fourier.coarse.run(Sign::Minus, &mut circle, &mut scratch);
         let mut data = vec![Complex::ZERO; fine];
-        data[0] = torus.correct(&circle[0], 0, first);
-        for k in 1..=torus.degree {
-            data[k] = torus.correct(&circle[k], k, first);
-            data[fine - k] = torus.correct(&circle[coarse - k], k, first);
+        data[0] = fourier.correct(&circle[0], 0, first);
+        for k in 1..=fourier.degree {
+            data[k] = fourier.correct(&circle[k], k, first);
+            data[fine - k] = fourier.correct(&circle[coarse - k], k, first);
         }
-        torus.theta.run(Sign::Plus, &mut data, &mut scratch);
-        (0..torus.rows())
-            .map(|r| data[torus.circle_position(r)])
+        fourier.theta.run(Sign::Plus, &mut data, &mut scratch);
+        (0..fourier.rows())
+            .map(|r| data[fourier.circle_position(r)])
             .collect()
     }
 }
 
 /// The adjoint of [`RowsFromRings`].
 pub(super) struct RingsFromRows<'a> {
-    pub(super) torus: &'a Torus,
+    pub(super) fourier: &'a DoubleFourier,
     pub(super) rows: &'a Modes,
     pub(super) first: usize,
 }
@@ -126,21 +127,21 @@ impl WithSimd for RingsFromRows<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) -> Vec<Complex> {
-        let (torus, first) = (self.torus, self.first);
-        let (coarse, fine) = (torus.coarse.length(), torus.theta.length());
+        let (fourier, first) = (self.fourier, self.first);
+        let (coarse, fine) = (fourier.coarse.length(), fourier.theta.length());
         let mut data = vec![Complex::ZERO; fine];
-        for r in 0..torus.rows() {
-            data[torus.circle_position(r)] = load(self.rows, r, first);
+        for r in 0..fourier.rows() {
+            data[fourier.circle_position(r)] = load(self.rows, r, first);
         }
         let mut scratch = vec![Complex::ZERO; fine];
-        torus.theta.run(Sign::Minus, &mut data, &mut scratch);
+        fourier.theta.run(Sign::Minus, &mut data, &mut scratch);
         let mut circle = vec![Complex::ZERO; coarse];
-        circle[0] = torus.correct(&data[0], 0, first);
-        for k in 1..=torus.degree {
-            circle[k] = torus.correct(&data[k], k, first);
-            circle[coarse - k] = torus.correct(&data[fine - k], k, first);
+        circle[0] = fourier.correct(&data[0], 0, first);
+        for k in 1..=fourier.degree {
+            circle[k] = fourier.correct(&data[k], k, first);
+            circle[coarse - k] = fourier.correct(&data[fine - k], k, first);
         }
-        torus.coarse.run(Sign::Plus, &mut circle, &mut scratch);
+        fourier.coarse.run(Sign::Plus, &mut circle, &mut scratch);
         let parity = parities(first);
         for j in 1..coarse / 2 {
             let mut mirror = circle[coarse - j];
@@ -158,7 +159,7 @@ impl WithSimd for RingsFromRows<'_> {
 
 /// Sixteen rows of fine values from their modes.
 pub(super) struct RowsFromModes<'a> {
-    pub(super) torus: &'a Torus,
+    pub(super) fourier: &'a DoubleFourier,
     pub(super) modes: &'a Modes,
     pub(super) first: usize,
     pub(super) values: &'a mut [f64],
@@ -169,8 +170,8 @@ impl WithSimd for RowsFromModes<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
-        let torus = self.torus;
-        let (n, stride) = (torus.steps(), torus.stride());
+        let fourier = self.fourier;
+        let (n, stride) = (fourier.steps(), fourier.stride());
         let rows = self.values.len() / stride;
         let mut data = vec![Complex::ZERO; n];
         let mut scratch = vec![Complex::ZERO; n];
@@ -178,7 +179,7 @@ impl WithSimd for RowsFromModes<'_> {
             let at = (self.first + row) * self.modes.stride + m;
             (self.modes.re[at], self.modes.im[at])
         };
-        for m in 0..=torus.degree {
+        for m in 0..=fourier.degree {
             for lane in 0..LANES.min(rows) {
                 let (ar, ai) = at(lane, m);
                 let (br, bi) = if lane + LANES < rows {
@@ -194,10 +195,10 @@ impl WithSimd for RowsFromModes<'_> {
                 }
             }
         }
-        torus.phi.run(Sign::Plus, &mut data, &mut scratch);
+        fourier.phi.run(Sign::Plus, &mut data, &mut scratch);
         for (r, row) in self.values.chunks_mut(stride).enumerate() {
             for (k, value) in row.iter_mut().enumerate() {
-                let element = &data[(k + n - REACH) % n];
+                let element = &data[(k + n - TAPS_BEFORE) % n];
                 *value = if r < LANES {
                     element.re[r]
                 } else {
@@ -210,7 +211,7 @@ impl WithSimd for RowsFromModes<'_> {
 
 /// The adjoint of [`RowsFromModes`], with modes Σ value e^{−imφ}.
 pub(super) struct ModesFromRows<'a> {
-    pub(super) torus: &'a Torus,
+    pub(super) fourier: &'a DoubleFourier,
     pub(super) values: &'a [f64],
     pub(super) re: &'a mut [f64],
     pub(super) im: &'a mut [f64],
@@ -221,14 +222,14 @@ impl WithSimd for ModesFromRows<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
-        let torus = self.torus;
-        let (n, stride) = (torus.steps(), torus.stride());
-        let mode_stride = torus.mode_stride();
+        let fourier = self.fourier;
+        let (n, stride) = (fourier.steps(), fourier.stride());
+        let mode_stride = fourier.mode_stride();
         let mut data = vec![Complex::ZERO; n];
         let mut scratch = vec![Complex::ZERO; n];
         for (r, row) in self.values.chunks(stride).enumerate() {
             for (k, value) in row.iter().enumerate() {
-                let element = &mut data[(k + n - REACH) % n];
+                let element = &mut data[(k + n - TAPS_BEFORE) % n];
                 if r < LANES {
                     element.re[r] += value;
                 } else {
@@ -236,9 +237,9 @@ impl WithSimd for ModesFromRows<'_> {
                 }
             }
         }
-        torus.phi.run(Sign::Minus, &mut data, &mut scratch);
+        fourier.phi.run(Sign::Minus, &mut data, &mut scratch);
         let rows = self.values.len() / stride;
-        for m in 0..=torus.degree {
+        for m in 0..=fourier.degree {
             let (up, down) = (&data[m], &data[(n - m) % n]);
             for lane in 0..LANES.min(rows) {
                 let at = lane * mode_stride + m;
