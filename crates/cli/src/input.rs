@@ -121,20 +121,20 @@ pub(crate) fn directions(path: &Path) -> Result<Vec<Direction>, Failure> {
 /// An object of either kind of surface.
 pub(crate) enum Surfaced {
     /// A radius per direction.
-    Radial(Object),
+    Radial(Box<Object>),
     /// A map of the sphere into space.
-    Spherical(SphericalObject),
+    Spherical(Box<SphericalObject>),
 }
 
 /// The object of a shape file of either kind; its surface is proved again.
 pub(crate) fn surfaced(path: &Path) -> Result<Surfaced, Failure> {
     let bytes = read(path)?;
     if envelope::kind_of(&bytes) != Some(Kind::Spherical) {
-        return Ok(Surfaced::Radial(object(path)?));
+        return Ok(Surfaced::Radial(Box::new(object(path)?)));
     }
     let record = SphericalRecord::from_bytes(&bytes).map_err(|e| Failure::input(path, e))?;
     let object = SphericalObject::from_record(&record).map_err(|e| Failure::input(path, e))?;
-    Ok(Surfaced::Spherical(object))
+    Ok(Surfaced::Spherical(Box::new(object)))
 }
 
 /// A file with a radial shape.

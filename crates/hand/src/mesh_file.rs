@@ -1,17 +1,17 @@
-//! The vertices of a mesh file (STL or OBJ) given as bytes.
+//! The vertices of a collision mesh given as bytes, by the reader of `shape`.
 
 use nalgebra::Point3;
-use thiserror::Error;
+use shape::io::{Geometry, LoadError, read_cloud};
 
 /// The largest mesh file accepted, in bytes.
 pub(crate) const MAX_MESH_BYTES: usize = 64 << 20;
-/// The largest number of vertices accepted; those of an STL count once a triangle.
+/// The largest number of vertices accepted.
 pub(crate) const MAX_MESH_VERTICES: usize = 2_000_000;
-const STL_HEADER: usize = 84;
-const STL_TRIANGLE: usize = 50;
+/// Bytes among which the kind of a file shows.
+const HEAD: usize = 1024;
 
 /// Why a mesh file was refused.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeshFileError {
     /// Too many bytes.
     #[error("{bytes} bytes, more than {MAX_MESH_BYTES}")]
@@ -19,165 +19,180 @@ pub enum MeshFileError {
         /// How many.
         bytes: usize,
     },
-    /// A binary STL whose length does not fit its triangle count.
-    #[error("an STL of {triangles} triangles has {expected} bytes, this one {bytes}")]
-    StlLength {
-        /// The count in the header.
-        triangles: u64,
-        /// The length it implies.
-        expected: u64,
-        /// The length found.
-        bytes: usize,
-    },
     /// Too many vertices.
     #[error("{vertices} vertices, more than {MAX_MESH_VERTICES}")]
     TooMany {
-        /// How many, or at which one reading ended.
-        vertices: u64,
+        /// How many.
+        vertices: usize,
     },
-    /// A line that cannot be read.
-    #[error("line {line}: expected a vertex with three finite coordinates")]
-    Line {
-        /// Its number, from 1.
-        line: usize,
+    /// A file that stands for the mesh in a repository.
+    #[error("a Git LFS pointer and not the mesh itself; fetch the mesh with `git lfs pull`")]
+    LfsPointer,
+    /// A web page.
+    #[error("a web page (HTML) and not a mesh; download the file itself")]
+    Html,
+    /// A format that is known and not read.
+    #[error("{format} is not read; convert the mesh to STL, OBJ, PLY or OFF")]
+    Unread {
+        /// Its name.
+        format: &'static str,
     },
-    /// A vertex with a coordinate that is no number.
-    #[error("vertex {0} is not finite")]
-    NotFinite(usize),
-    /// No vertex at all.
-    #[error("no vertices: neither STL nor OBJ")]
-    Empty,
+    /// Vertices with coordinates that are not finite.
+    #[error("{vertices} vertices are not finite")]
+    NotFinite {
+        /// How many.
+        vertices: usize,
+    },
+    /// The file is damaged, or of no format that is read.
+    #[error(transparent)]
+    Load(#[from] LoadError),
 }
 
-/// Vertices of a binary STL, an ASCII STL or an OBJ, in the file's unit and order
-/// (those of an STL once a triangle).
-pub fn mesh_vertices(bytes: &[u8]) -> Result<Vec<Point3<f64>>, MeshFileError> {
+/// Vertices of an STL, OBJ, PLY or OFF mesh that a face uses, in the file's unit and order; all
+/// vertices of a file without faces.
+///
+/// The content decides the format; `name`, the file's name, decides where the content leaves it open.
+///
+/// # Errors
+/// The bytes are not a mesh, or too large.
+pub fn mesh_vertices(bytes: &[u8], name: &str) -> Result<Vec<Point3<f64>>, MeshFileError> {
     if bytes.len() > MAX_MESH_BYTES {
         return Err(MeshFileError::TooLarge { bytes: bytes.len() });
     }
-    let text = std::str::from_utf8(bytes).ok();
-    let vertices = match text.filter(|t| looks_like_text(t)) {
-        Some(text) => text_vertices(text)?,
-        None => binary_stl(bytes)?,
+    let loaded = read_cloud(bytes, format(bytes, name)?)?;
+    if loaded.dropped > 0 {
+        return Err(MeshFileError::NotFinite {
+            vertices: loaded.dropped,
+        });
+    }
+    let vertices = match loaded.geometry {
+        Geometry::Points(points) => points,
+        Geometry::Mesh(mesh) => {
+            let mut used = vec![false; mesh.vertices.len()];
+            for &corner in mesh.triangles.iter().flatten() {
+                used[corner as usize] = true;
+            }
+            let of_faces = mesh.vertices.into_iter().zip(used);
+            of_faces.filter(|(_, used)| *used).map(|(v, _)| v).collect()
+        }
     };
-    if vertices.is_empty() {
-        return Err(MeshFileError::Empty);
-    }
-    match vertices
-        .iter()
-        .position(|v| !v.coords.iter().all(|c| c.is_finite()))
-    {
-        Some(index) => Err(MeshFileError::NotFinite(index)),
-        None => Ok(vertices),
-    }
-}
-
-fn looks_like_text(text: &str) -> bool {
-    text.lines().take(100_000).any(|line| {
-        let mut words = line.split_ascii_whitespace();
-        matches!(words.next(), Some("v" | "vertex")) && words.next().is_some()
-    })
-}
-
-fn text_vertices(text: &str) -> Result<Vec<Point3<f64>>, MeshFileError> {
-    let mut vertices = Vec::new();
-    for (index, line) in text.lines().enumerate() {
-        let mut words = line.split_ascii_whitespace();
-        if !matches!(words.next(), Some("v" | "vertex")) {
-            continue;
-        }
-        if vertices.len() == MAX_MESH_VERTICES {
-            return Err(MeshFileError::TooMany {
-                vertices: vertices.len() as u64 + 1,
-            });
-        }
-        let mut coordinate = || {
-            words
-                .next()
-                .and_then(|w| w.parse::<f64>().ok())
-                .filter(|c| c.is_finite())
-                .ok_or(MeshFileError::Line { line: index + 1 })
-        };
-        vertices.push(Point3::new(coordinate()?, coordinate()?, coordinate()?));
+    if vertices.len() > MAX_MESH_VERTICES {
+        return Err(MeshFileError::TooMany {
+            vertices: vertices.len(),
+        });
     }
     Ok(vertices)
 }
 
-fn binary_stl(bytes: &[u8]) -> Result<Vec<Point3<f64>>, MeshFileError> {
-    let Some(count) = bytes.get(80..STL_HEADER) else {
-        return Err(MeshFileError::Empty);
+/// The extension that stands for the format of the content.
+fn format<'a>(bytes: &[u8], name: &'a str) -> Result<&'a str, MeshFileError> {
+    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]).to_ascii_lowercase();
+    let head = head.trim_start_matches('\u{feff}').trim_start();
+    let unread = |format| Err(MeshFileError::Unread { format });
+    if is_binary_stl(bytes) {
+        return Ok("stl");
+    }
+    if head.starts_with("version https://git-lfs") {
+        return Err(MeshFileError::LfsPointer);
+    }
+    if head.starts_with("<!doctype html") || head.starts_with("<html") {
+        return Err(MeshFileError::Html);
+    }
+    if head.contains("<collada") {
+        return unread("Collada (DAE)");
+    }
+    if head.starts_with("gltf") {
+        return unread("binary glTF (GLB)");
+    }
+    if head.starts_with("ply") {
+        return Ok("ply");
+    }
+    if head.starts_with("off") {
+        return Ok("off");
+    }
+    if head.starts_with("solid") {
+        return Ok("stl");
+    }
+    if bytes
+        .split(|b| *b == b'\n')
+        .any(|line| line.starts_with(b"v "))
+    {
+        return Ok("obj");
+    }
+    Ok(name.rsplit_once('.').map_or("", |(_, extension)| extension))
+}
+
+/// Whether the length fits the number of triangles after the header of a binary STL.
+fn is_binary_stl(bytes: &[u8]) -> bool {
+    const HEADER: usize = 84;
+    const TRIANGLE: u64 = 50;
+    let Some(&[a, b, c, d]) = bytes.get(HEADER - 4..HEADER).and_then(<[u8]>::first_chunk) else {
+        return false;
     };
-    let triangles = u64::from(u32::from_le_bytes([count[0], count[1], count[2], count[3]]));
-    let expected = STL_HEADER as u64 + triangles * STL_TRIANGLE as u64;
-    if expected != bytes.len() as u64 {
-        return Err(MeshFileError::StlLength {
-            triangles,
-            expected,
-            bytes: bytes.len(),
-        });
-    }
-    if 3 * triangles > MAX_MESH_VERTICES as u64 {
-        return Err(MeshFileError::TooMany {
-            vertices: 3 * triangles,
-        });
-    }
-    let coordinate = |b: &[u8]| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
-    Ok(bytes[STL_HEADER..]
-        .chunks_exact(STL_TRIANGLE)
-        .flat_map(|triangle| triangle[12..48].chunks_exact(12))
-        .map(|v| {
-            Point3::new(
-                coordinate(&v[0..]),
-                coordinate(&v[4..]),
-                coordinate(&v[8..]),
-            )
-        })
-        .collect())
+    let triangles = u64::from(u32::from_le_bytes([a, b, c, d]));
+    HEADER as u64 + TRIANGLE * triangles == bytes.len() as u64
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn all_three_forms_give_the_same_vertices() {
-        let expected = [
-            Point3::new(0.0, 0.0, 0.0),
-            Point3::new(1.0, 0.0, 0.0),
-            Point3::new(0.0, 0.5, 0.25),
-        ];
-        let obj = "# a\nv 0 0 0\nv 1 0 0\nv 0 0.5 0.25\nf 1 2 3\n";
-        let ascii = "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0.5 0.25\nendloop\nendfacet\nendsolid";
+    const EXPECTED: [Point3<f64>; 3] = [
+        Point3::new(0.0, 0.0, 0.0),
+        Point3::new(1.0, 0.0, 0.0),
+        Point3::new(0.0, 0.5, 0.25),
+    ];
+
+    fn binary_stl() -> Vec<u8> {
         let mut binary = vec![0u8; 80];
         binary.extend(1u32.to_le_bytes());
         binary.extend([0u8; 12]);
-        for v in &expected {
+        for v in &EXPECTED {
             for c in v.iter() {
                 binary.extend((*c as f32).to_le_bytes());
             }
         }
         binary.extend([0u8; 2]);
-        for bytes in [obj.as_bytes(), ascii.as_bytes(), &binary] {
-            assert_eq!(mesh_vertices(bytes).unwrap(), expected);
+        binary
+    }
+
+    #[test]
+    fn the_content_decides_the_format() {
+        let obj = "# a\nv 0 0 0\nv 1 0 0\nv 0 0.5 0.25\nf 1 2 3\n";
+        let ascii = "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0.5 0.25\nendloop\nendfacet\nendsolid";
+        let off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 0.5 0.25\n3 0 1 2\n";
+        let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 0.5 0.25\n3 0 1 2\n";
+        let binary = binary_stl();
+        let texts = [obj, ascii, off, ply].map(str::as_bytes);
+        for bytes in texts.into_iter().chain([&binary[..]]) {
+            for name in ["p.stl", "package://a/b.OBJ", "c"] {
+                assert_eq!(mesh_vertices(bytes, name).unwrap(), EXPECTED);
+            }
         }
     }
 
     #[test]
-    fn broken_files_are_refused() {
+    fn vertices_that_no_face_uses_do_not_count() {
+        let obj = b"v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 0.5 0.25\nf 2 3 4\n";
+        assert_eq!(mesh_vertices(obj, "p.obj").unwrap(), EXPECTED);
+        assert_eq!(mesh_vertices(b"v 9 9 9\n", "p.obj").unwrap().len(), 1);
+    }
+
+    #[test]
+    fn what_is_no_mesh_is_named() {
+        let refused = |text: &str| mesh_vertices(text.as_bytes(), "p.stl").unwrap_err();
+        let pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
+        assert_eq!(refused(pointer), MeshFileError::LfsPointer);
+        assert_eq!(refused("\n<!DOCTYPE html>\n<html>"), MeshFileError::Html);
+        let dae = refused("<?xml version=\"1.0\"?>\n<COLLADA version=\"1.4.1\">");
+        assert!(dae.to_string().contains("DAE"));
+        assert!(matches!(
+            refused("v 0 0 0\nv 0 0\n"),
+            MeshFileError::Load(_)
+        ));
+        assert!(matches!(refused(""), MeshFileError::Load(_)));
         let mut huge = vec![0u8; 84];
         huge[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
-        assert!(matches!(
-            mesh_vertices(&huge),
-            Err(MeshFileError::StlLength { .. })
-        ));
-        assert_eq!(mesh_vertices(b""), Err(MeshFileError::Empty));
-        assert_eq!(
-            mesh_vertices(b"v 0 0 0\nv nan 0 0\n"),
-            Err(MeshFileError::Line { line: 2 })
-        );
-        assert_eq!(
-            mesh_vertices(b"v 0 0\n"),
-            Err(MeshFileError::Line { line: 1 })
-        );
+        assert!(mesh_vertices(&huge, "p.stl").is_err());
     }
 }

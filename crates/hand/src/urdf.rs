@@ -179,7 +179,7 @@ pub fn load_urdf(text: &str) -> Result<HandModel, UrdfError> {
 
 /// Reads a hand; `mesh_bytes` returns the content of a mesh file by its name in the URDF.
 ///
-/// Each collision mesh (STL or OBJ, recognised by content) becomes the convex hull of its
+/// Each collision mesh (STL, OBJ, PLY or OFF, recognised by content) becomes the convex hull of its
 /// vertices. The caller decides which names it resolves and where.
 pub fn load_urdf_with_meshes<E: std::fmt::Display>(
     text: &str,
@@ -190,7 +190,8 @@ pub fn load_urdf_with_meshes<E: std::fmt::Display>(
     check_counts(&robot)?;
     let resolve = |link: &str, file: &str| {
         let bytes = mesh_bytes(file).map_err(|e| mesh_error(link, file, e.to_string()))?;
-        mesh_vertices(&bytes).map_err(|e: MeshFileError| mesh_error(link, file, e.to_string()))
+        mesh_vertices(&bytes, file)
+            .map_err(|e: MeshFileError| mesh_error(link, file, e.to_string()))
     };
     let mut geometry = Vec::with_capacity(robot.links.len());
     for link in &robot.links {

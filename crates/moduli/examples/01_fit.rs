@@ -1,4 +1,5 @@
 //! Fits a surface to a scan, says how good it is, and stores it.
+#![allow(clippy::print_stdout, reason = "a program that prints its result")]
 
 use moduli::record::ShapeRecord;
 use moduli::{FitSettings, Object, PointCloud};

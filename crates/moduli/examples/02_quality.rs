@@ -1,4 +1,5 @@
 //! Measures one grasp under every convention, then all its metrics under one.
+#![allow(clippy::print_stdout, reason = "a program that prints its result")]
 
 use moduli::{Convention, FitSettings, Metrics, Object, PointCloud};
 

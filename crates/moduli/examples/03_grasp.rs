@@ -1,4 +1,5 @@
 //! From a scan to ranked grasps of the built-in hand, as `moduli grasp` does it.
+#![allow(clippy::print_stdout, reason = "a program that prints its result")]
 
 use moduli::{Convention, FitSettings, Hand, Library, Object, Plan, PointCloud, Poses};
 

@@ -99,7 +99,7 @@ fn model(options: &HandOptions, checked: &mut Checked) -> Option<HandModel> {
     let missing = RefCell::new(BTreeSet::new());
     let model = load_urdf_with_meshes(&text, |name| {
         let usable = folders.bytes(name).and_then(|bytes| {
-            mesh_vertices(&bytes).map_err(|e| e.to_string())?;
+            mesh_vertices(&bytes, name).map_err(|e| e.to_string())?;
             Ok(bytes)
         });
         Ok::<_, String>(usable.unwrap_or_else(|reason| {

@@ -181,12 +181,20 @@ fn huge_meshes_are_refused_by_name_before_they_are_worked_on() {
     let mut claimed = vec![0u8; 84];
     claimed[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
     let said = refused(claimed);
-    assert!(said.contains("'m.stl' of link 'a'") && said.contains("4294967295 triangles"));
+    assert!(said.contains("'m.stl' of link 'a'") && said.contains("4294967295 facets"));
     let said = refused(vec![0u8; (64 << 20) + 1]);
     assert!(said.contains("'m.stl' of link 'a'") && said.contains("67108865 bytes"));
     // Within the limit of bytes, but with more vertices than a hull is made of.
     let mut many = vec![0u8; 84 + 50 * 700_000];
     many[80..84].copy_from_slice(&700_000u32.to_le_bytes());
+    // Distinct corners: equal ones count once.
+    for (k, corner) in many[84..]
+        .chunks_exact_mut(50)
+        .flat_map(|facet| facet[12..48].chunks_exact_mut(12))
+        .enumerate()
+    {
+        corner[..4].copy_from_slice(&(k as f32).to_le_bytes());
+    }
     let said = refused(many);
     assert!(said.contains("2100000 vertices"), "{said}");
 }
