@@ -43,7 +43,7 @@ pub struct Basis {
     derivative: Vec<Vec<f64>>,
 }
 
-/// Scratch of one evaluation; make it once and reuse it.
+/// Memory for one evaluation at a time; make it once and reuse it.
 pub struct Workspace {
     azimuth: Azimuth,
     /// Π columns of three neighbouring orders, each indexed by l.
@@ -72,12 +72,12 @@ impl Basis {
         index::count(self.degree)
     }
 
-    /// A basis always holds at least the constant.
+    /// Always false: a basis holds at least the constant.
     pub fn is_empty(&self) -> bool {
         false
     }
 
-    /// Scratch for this degree.
+    /// Memory for evaluations of this degree.
     pub fn workspace(&self) -> Workspace {
         Workspace {
             azimuth: Azimuth::new(self.degree),
@@ -86,8 +86,11 @@ impl Basis {
     }
 
     /// Writes Y_{l,m}(p) for all l ≤ L into `values`, of length (L+1)², position l²+l+m.
+    ///
+    /// # Panics
+    /// `values` does not have (L+1)² entries.
     pub fn values(&self, p: &Direction, workspace: &mut Workspace, values: &mut [f64]) {
-        assert_eq!(values.len(), self.len(), "one value a harmonic");
+        assert_eq!(values.len(), self.len(), "one value per harmonic");
         workspace.azimuth.fill(p.x, p.y);
         for m in 0..=self.degree {
             let column = &mut workspace.columns[0][..=self.degree - m];
@@ -105,14 +108,17 @@ impl Basis {
 
     /// Y_{l,m}(p) and ∇_S Y_{l,m}(p) for all l ≤ L into `harmonics`, of length (L+1)².
     ///
-    /// The gradient is the ambient gradient of Π(z)·(x+iy)ᵐ projected onto the tangent plane.
+    /// The gradient is the gradient in R³ of Π(z)·(x+iy)ᵐ projected onto the tangent plane.
+    ///
+    /// # Panics
+    /// `harmonics` does not have (L+1)² entries.
     pub fn values_and_gradients(
         &self,
         p: &Direction,
         workspace: &mut Workspace,
         harmonics: &mut [Harmonic],
     ) {
-        assert_eq!(harmonics.len(), self.len(), "one harmonic a position");
+        assert_eq!(harmonics.len(), self.len(), "one entry per harmonic");
         workspace.azimuth.fill(p.x, p.y);
         self.load_column(0, 0, p.z, workspace);
         for m in 0..=self.degree {
@@ -136,7 +142,10 @@ impl Basis {
         }
     }
 
-    /// f(p) = Σ β_{lm} Y_{lm}(p). The coefficients must have this basis's degree. About 3 L² flops.
+    /// f(p) = Σ β_{lm} Y_{lm}(p). About 3 L² flops.
+    ///
+    /// # Panics
+    /// The coefficients are not of this basis's degree.
     pub fn sum(&self, beta: &Coefficients, p: &Direction, workspace: &mut Workspace) -> f64 {
         assert_eq!(beta.degree(), self.degree, "coefficients of this degree");
         let beta = beta.as_slice();
@@ -172,6 +181,9 @@ impl Basis {
     ///
     /// With F the polynomial extension of f to R³ and T the projection onto the tangent plane,
     /// ∇_S f = T ∇F and Hess_S f = T (∇²F − (p·∇F) I) T.
+    ///
+    /// # Panics
+    /// The coefficients are not of this basis's degree.
     pub fn jet(&self, beta: &Coefficients, p: &Direction, workspace: &mut Workspace) -> Jet {
         assert_eq!(beta.degree(), self.degree, "coefficients of this degree");
         let beta = beta.as_slice();

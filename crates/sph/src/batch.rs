@@ -1,7 +1,7 @@
-//! Sums over all harmonics at many scattered points, several points in one register.
+//! Sums over all harmonics at many scattered points, with one point per vector lane.
 //!
-//! Both sums run the recurrences of [`crate::basis`] on lanes of points; tests compare them with
-//! the plain path. The order of additions is fixed, so results do not depend on threads.
+//! The recurrences are those of [`crate::basis`], and the tests compare the two. The order of additions
+//! is fixed, so the results do not depend on the number of threads.
 
 mod jets;
 
@@ -16,14 +16,15 @@ use crate::index;
 use crate::lanes::{Lanes, coordinates, multiply_complex};
 use crate::legendre::Legendre;
 
-/// Points that go through the recurrences together.
+/// Points that go through the recurrences together: two recurrences and two sums of sixteen numbers
+/// fit the vector registers.
 const LANES: usize = 16;
 type Lane = Lanes<LANES>;
 
-/// Points of one task of [`evaluate`].
+/// Points per task of [`evaluate`].
 const CHUNK: usize = 256;
 
-/// f(pᵢ) = Σ β_{lm} Y_{lm}(pᵢ) for all i. About 4 L² flops a point.
+/// f(pᵢ) = Σ β_{lm} Y_{lm}(pᵢ) for all i. About 4 L² flops per point.
 pub fn evaluate(beta: &Coefficients, directions: &[Direction]) -> Vec<f64> {
     let legendre = Legendre::new(beta.degree());
     let mut out = vec![0.0; directions.len()];
@@ -40,11 +41,12 @@ pub fn evaluate(beta: &Coefficients, directions: &[Direction]) -> Vec<f64> {
     out
 }
 
-/// Σᵢ wᵢ Y_{lm}(pᵢ) for all l ≤ L: the adjoint of [`evaluate`]. About 4 L² flops a point.
+/// Σᵢ wᵢ Y_{lm}(pᵢ) for all l ≤ L: the adjoint of [`evaluate`]. About 4 L² flops per point.
 ///
-/// `weights` has one entry a direction.
+/// # Panics
+/// `weights` does not have one entry per direction.
 pub fn moments(directions: &[Direction], weights: &[f64], degree: usize) -> Coefficients {
-    assert_eq!(directions.len(), weights.len(), "one weight a direction");
+    assert_eq!(directions.len(), weights.len(), "one weight per direction");
     let legendre = Legendre::new(degree);
     let mut sums = vec![[0.0; LANES]; index::count(degree)];
     Arch::new().dispatch(Moments {

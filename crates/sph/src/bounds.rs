@@ -7,16 +7,16 @@ use crate::direction::{Direction, SphericalCoords};
 use crate::fft::smooth_length;
 use crate::grid::RingGrid;
 
-/// An interval that contains every value of a function on the sphere, and the values seen on a grid.
+/// A proved interval for the values of a function on the sphere, and the extreme values found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// No value is below this.
+    /// A proved lower bound of the minimum.
     pub lower: f64,
-    /// No value is above this.
+    /// A proved upper bound of the maximum.
     pub upper: f64,
-    /// Smallest value on the grid: an upper bound of the true minimum.
+    /// Smallest value found: an upper bound of the minimum.
     pub seen_lower: f64,
-    /// Largest value on the grid: a lower bound of the true maximum.
+    /// Largest value found: a lower bound of the maximum.
     pub seen_upper: f64,
 }
 
@@ -24,14 +24,15 @@ pub struct Range {
 ///
 /// On the doubled torus a function of degree L is a trigonometric polynomial of degree L in θ and
 /// in φ, so on a grid of spacing h ≤ π/L, ‖f−c‖_∞ ≤ max_grid|f−c| / cos²(Lh/2) for every constant
-/// c (Ehlich and Zeller 1964, once a variable). c is the middle of the values seen; a margin for
-/// rounding is added. `oversampling` 4, 8, 16 widens the range by 17 %, 4 %, 1 %. The grid has
-/// 2 (oversampling·L)² points; 10 ms at L = 50 and 16. [`tight_range`] is closer.
+/// c (Ehlich and Zeller 1964, applied to each variable). c is the middle of the values found; a margin
+/// for rounding is added. `oversampling` is at least 2; 4, 8 and 16 widen the range by 17 %, 4 % and
+/// 1 %. The grid has 2 (oversampling·L)² points: 10 ms at L = 50 and oversampling 16. [`tight_range`]
+/// is closer.
 pub fn certified_range(beta: &Coefficients, oversampling: usize) -> Range {
     seen_on_grid(beta, oversampling.max(2)).range
 }
 
-/// A range and what it was seen on.
+/// A range and the grid that it comes from.
 struct Seen {
     range: Range,
     rings: usize,
@@ -69,16 +70,16 @@ fn seen_on_grid(beta: &Coefficients, oversampling: usize) -> Seen {
     }
 }
 
-/// Certified range whose ends are within `share` of half the range of values attained.
+/// Certified range that exceeds the range of values by at most `share` of half that range at each end.
 ///
-/// Starts from [`certified_range`] on a grid 8 times oversampled, which bounds |f−c| by M. Along any
-/// great circle f is a trigonometric polynomial of degree L, so from a point with (f−c)/M = cos ψ it
-/// falls no lower than M cos(ψ + L d) within distance d (Szegő's form of Bernstein's inequality), and
-/// no lower than f − |∇f| d + λ d²/2 − M (L d)³/6, λ ≤ 0 the least curvature (Bernstein for the third
-/// derivative). Cells that neither settles are quartered, up to a limit of work; what is left open
-/// then widens the range, which stays certified. Values, gradients and Hessians are direct sums, so
-/// that rounding is their only error; it has the same margin as in [`certified_range`], twice, since
-/// gradients and Hessians have their share of it. About 30 ms at L = 50.
+/// A branch and bound search. [`certified_range`] on a grid 8 times oversampled bounds |f−c| by M. Along
+/// any great circle f is a trigonometric polynomial of degree L. So within distance d of a point with
+/// (f−c)/M = cos ψ, f is at least M cos(ψ + L d) + c (Szegő's form of Bernstein's inequality), and at
+/// least f − |∇f| d + λ d²/2 − M (L d)³/6, where λ ≤ 0 is the least curvature (Bernstein's inequality
+/// for the third derivative). Cells for which neither bound suffices are quartered, up to 60,000 cells
+/// per end. If cells remain, their bounds widen the range, which is still certified. Values, gradients
+/// and Hessians are direct sums, so that rounding is their only error; the margin for it is twice that
+/// of [`certified_range`], since gradients and Hessians are rounded too. About 30 ms at L = 50.
 pub fn tight_range(beta: &Coefficients, share: f64) -> Range {
     const OVERSAMPLING: usize = 8;
     let seen = seen_on_grid(beta, OVERSAMPLING);
@@ -104,11 +105,11 @@ pub fn tight_range(beta: &Coefficients, share: f64) -> Range {
     }
 }
 
-/// Margin for the rounding of a sum, in units of [`rounding_scale`]: some five hundred units in the
-/// last place of the largest value that the sum could have.
+/// Margin for the rounding of a sum, in units of [`rounding_scale`]: about 500 units in the last place
+/// of the largest value that the sum could have.
 const ROUNDING: f64 = 1e-13;
 
-/// Most cells looked at on one side.
+/// Most cells visited per end of the range.
 const MOST_CELLS: usize = 60_000;
 
 /// All points within `half` of (θ, φ) in both angles.
@@ -138,7 +139,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Cells whose values alone do not settle the minimum, and the maximum.
+    /// Cells that may hold the minimum, and cells that may hold the maximum, by their values alone.
     fn open_cells(&self, seen: &Seen) -> [Vec<Cell>; 2] {
         let theta_step = std::f64::consts::PI / (seen.rings - 1) as f64;
         let phi_step = std::f64::consts::TAU / seen.longitudes as f64;
@@ -163,7 +164,7 @@ impl Search<'_> {
         cells
     }
 
-    /// The value from which on sign·f at a cell's centre cannot fall below `best` less the slack.
+    /// If sign·f at a cell's centre is at least this, sign·f on the cell is at least `best` − slack.
     fn settled_above(&self, best: f64, sign: f64, half: f64) -> f64 {
         let centre = sign * self.middle;
         if self.reach <= 0.0 {
@@ -174,7 +175,7 @@ impl Search<'_> {
         centre + self.reach * turn.max(0.0).cos()
     }
 
-    /// A certified lower bound of sign·f, and the least value seen.
+    /// A certified lower bound of sign·f, and the least value found.
     fn extreme(&self, start: &[Cell], mut best: f64, sign: f64) -> (f64, f64) {
         let mut open = start.to_vec();
         let mut work = 0;

@@ -2,7 +2,7 @@
 
 use crate::index;
 
-/// Why numbers do not make a coefficient vector.
+/// Why numbers are not a coefficient vector.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CoefficientsError {
     /// The length is not (L+1)² for any L.
@@ -31,7 +31,10 @@ pub struct Coefficients {
 }
 
 impl Coefficients {
-    /// Checks length and finiteness.
+    /// Coefficients from values at positions l²+l+m.
+    ///
+    /// # Errors
+    /// The length is not (L+1)² for any L, or a value is not finite.
     pub fn new(values: Vec<f64>) -> Result<Self, CoefficientsError> {
         let root = values.len().isqrt();
         if root == 0 || root * root != values.len() {
@@ -76,12 +79,12 @@ impl Coefficients {
         &self.values
     }
 
-    /// The values, to be changed in place. The caller keeps them finite.
+    /// The values, to be changed in place. The caller must keep them finite.
     pub fn as_mut_slice(&mut self) -> &mut [f64] {
         &mut self.values
     }
 
-    /// β_{l,m}; 0 beyond the degree.
+    /// β_{l,m}; 0 for l > L. Needs |m| ≤ l.
     pub fn get(&self, l: usize, m: isize) -> f64 {
         if l > self.degree {
             0.0
@@ -90,14 +93,14 @@ impl Coefficients {
         }
     }
 
-    /// The same function written to another degree: cut above it, or filled with zeros.
+    /// The function truncated to a lower degree, or the same function at a higher degree.
     pub fn with_degree(&self, degree: usize) -> Self {
         let mut values = self.values.clone();
         values.resize(index::count(degree), 0.0);
         Self { degree, values }
     }
 
-    /// Σ αᵢ βᵢ, to the highest degree among them. No terms give the zero function of degree 0.
+    /// Σ αᵢ βᵢ, of the highest degree among the terms; without terms the zero function of degree 0.
     pub fn combination<'a>(terms: impl IntoIterator<Item = (f64, &'a Self)>) -> Self {
         let mut sum = Self::zeros(0);
         for (weight, beta) in terms {
@@ -111,7 +114,7 @@ impl Coefficients {
         sum
     }
 
-    /// ‖β₁ − β₂‖ = (∫_{S²} |f₁ − f₂|²)^{1/2}, degrees may differ.
+    /// ‖β₁ − β₂‖ = (∫_{S²} |f₁ − f₂|²)^{1/2}. The degrees may differ.
     ///
     /// ```
     /// use sph::Coefficients;

@@ -1,4 +1,4 @@
-//! Functions on the sphere as fine grids on the doubled torus, ready for local interpolation.
+//! The double Fourier sphere: functions as fine grids on a torus, ready for local interpolation.
 //!
 //! With θ running once around the circle, (θ, φ) and (2π−θ, φ+π) are one point, and a function of
 //! degree D is a trigonometric polynomial of degree D in both angles. Its modes, divided by the
@@ -26,13 +26,13 @@ pub(crate) struct FineGrid {
     pub(crate) values: Vec<f64>,
 }
 
-/// Constants for one degree.
+/// The transform between coefficients of one degree and fine grids.
 #[derive(Clone, Debug)]
 pub(crate) struct DoubleFourier {
     degree: usize,
     two_step: TwoStep,
     kernel: Kernel,
-    /// Around the θ circle through the rings where harmonics are summed.
+    /// Along the θ circle through the rings on which harmonics are summed.
     coarse: Fft,
     theta: Fft,
     phi: Fft,
@@ -41,7 +41,7 @@ pub(crate) struct DoubleFourier {
     blocks: Vec<RingPairs>,
 }
 
-/// Numbers (re, im) with rows of `stride`: modes m = 0 … D of every ring or row.
+/// Complex modes m = 0 … D of every ring or row, `stride` numbers per row.
 struct Modes {
     stride: usize,
     re: Vec<f64>,
@@ -62,7 +62,7 @@ impl DoubleFourier {
     pub(crate) fn new(degree: usize) -> Self {
         let kernel = Kernel::new();
         let needed = (2 * degree + 1) as f64 * OVERSAMPLING;
-        // A window must not meet itself around the circle.
+        // The window must be narrower than the circle.
         let fine = smooth_length((needed.ceil() as usize).max(2 * TAPS));
         let coarse = smooth_length(2 * degree + 2);
         let correction = |share: f64| -> Vec<f64> {
@@ -109,7 +109,7 @@ impl DoubleFourier {
         self.steps() / 2 + TAPS
     }
 
-    /// Words from one row to the next.
+    /// Numbers from the start of one row to the start of the next.
     pub(crate) fn stride(&self) -> usize {
         self.steps() + TAPS
     }

@@ -1,7 +1,7 @@
-//! Fast Fourier transforms of eight sequences at once, one sequence a lane.
+//! Fast Fourier transforms of eight sequences at once, with one sequence per vector lane.
 //!
-//! Lengths are products of 2, 3 and 5. Everything is inlined into the caller, who is expected to
-//! run it inside a pulp dispatch, so that a lane array becomes one or two vector registers.
+//! Lengths are products of 2, 3 and 5. Everything is inlined into the caller, which runs inside a pulp
+//! dispatch, so that an array of lanes becomes one or two vector registers.
 
 use crate::lanes::Lanes;
 
@@ -26,7 +26,7 @@ impl Complex {
 #[derive(Clone, Debug)]
 pub(crate) struct Fft {
     length: usize,
-    /// Radix of every pass, first pass first.
+    /// Radix of every pass, in the order of the passes.
     radices: Vec<usize>,
     /// (cos, sin) of 2πj/n, j = 0 … n−1.
     twiddles: Vec<(f64, f64)>,
@@ -41,7 +41,7 @@ pub(crate) enum Sign {
     Plus,
 }
 
-/// The least even product of 2, 3 and 5 that is not below `least`.
+/// The least even number ≥ `least` whose prime factors are 2, 3 and 5.
 pub(crate) fn smooth_length(least: usize) -> usize {
     let smooth = |mut n: usize| {
         for p in [2, 3, 5] {
@@ -120,7 +120,7 @@ impl Fft {
 struct Pass<'a> {
     twiddles: &'a [(f64, f64)],
     flip: f64,
-    /// Length of the sequences that remain after this pass.
+    /// Length of the sequences after this pass.
     part: usize,
     /// Sequences interleaved before this pass.
     stride: usize,

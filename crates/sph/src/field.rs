@@ -1,7 +1,8 @@
 //! Repeated evaluation of one function and its derivatives at arbitrary points.
 //!
-//! Summing (L+1)² terms at every point dwarfs everything else in an ascent. A [`Field`] sums them
-//! once, on fine grids of two charts of the sphere, and reads a point from its 16×16 neighbours.
+//! An ascent evaluates one function thousands of times, and a sum of (L+1)² terms at every point would
+//! dominate its cost. A [`Field`] does the sums once, on fine grids of two charts of the sphere, and
+//! interpolates from 16×16 grid neighbours.
 
 use nalgebra::{Matrix3, Vector3};
 use pulp::{Arch, Simd, WithSimd};
@@ -14,10 +15,10 @@ use crate::kernel::TAPS;
 use crate::multiply_add::multiply_add;
 use crate::rotation::{cyclic, rotate};
 
-/// Why fields do not combine.
+/// Why fields cannot be combined.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FieldError {
-    /// Degrees differ, so the grids do.
+    /// The degrees differ, and so do the grids.
     #[error("field {index} is of degree {degree}; the first has degree {first_degree}")]
     Mismatch {
         /// Which field.
@@ -32,31 +33,47 @@ pub enum FieldError {
     Empty,
 }
 
-/// Lower degrees are held as this one: a window needs a grid of its own width at least.
+/// Lower degrees are stored as this one: the grid must be at least as wide as the window.
 const LEAST_DEGREE: usize = 8;
 
-/// A function on the sphere, ready to be read anywhere in a fraction of a microsecond.
+/// A function on the sphere, tabulated so that its value and derivatives anywhere take a fraction of a
+/// microsecond.
 ///
-/// Its window has sixteen taps: fourteen would save a thirtieth of the time and cost two digits of
-/// the Hessian.
+/// With M = max |f − mean| and L at least 8, the errors of value, gradient and Hessian are below
+/// 1e-13 M, 1e-13 L M and 2e-12 L² M. If the coefficients fall like 1/l², they are below 1e-10 of the
+/// largest value, gradient and Hessian (`docs/accuracy.md`). Tests measure both, but neither is proved:
+/// proofs use [`crate::bounds`].
 ///
-/// Linear in the coefficients: the field of Σ αᵢ βᵢ is [`Field::combine`] of the fields, a sum over
-/// grids. With M = max |f − mean| and L at least 8, errors of value, gradient and Hessian are below
-/// 1e-13 M, 1e-13 L M and 2e-12 L² M; where coefficients fall like 1/l², they are below 1e-10 of the
-/// largest value, gradient and Hessian (`docs/accuracy.md`). Tests measure both; nothing that must be
-/// proved rests on a field. Memory: about 80 L² bytes a chart.
+/// A field is linear in the coefficients: the field of Σ αᵢ βᵢ is [`Field::combine`] of the fields, a
+/// sum over grids. Memory: about 80 L² bytes per chart. The window has sixteen taps; fourteen would save
+/// a thirtieth of the time and lose two digits of the Hessian.
+///
+/// ```
+/// use sph::direction::even_directions;
+/// use sph::{Basis, Coefficients, Field};
+///
+/// let mut beta = Coefficients::constant(12, 1.0);
+/// beta.as_mut_slice()[sph::index::position(3, -2)] = 0.1;
+/// let (field, basis) = (Field::new(&beta), Basis::new(12));
+/// let mut workspace = basis.workspace();
+/// for p in even_directions(100) {
+///     let (table, sum) = (field.jet(&p), basis.jet(&beta, &p, &mut workspace));
+///     assert!((table.value - sum.value).abs() < 1e-12);
+///     assert!((table.gradient - sum.gradient).norm() < 1e-11);
+/// }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Field {
     fourier: DoubleFourier,
     /// The chart with its axis along z, and the one along x.
     charts: [FineGrid; 2],
-    /// The constant part, which needs no grid.
+    /// The mean of the function; the grids hold the rest.
     mean: f64,
     arch: Arch,
 }
 
 impl Field {
-    /// Builds both charts. Milliseconds at L = 50; L³ flops.
+    /// Tabulates a function on both charts. A few milliseconds at L = 50; about L³ flops.
     pub fn new(beta: &Coefficients) -> Self {
         let fourier = DoubleFourier::new(beta.degree().max(LEAST_DEGREE));
         let mut rest = beta.with_degree(fourier.degree());
@@ -70,14 +87,15 @@ impl Field {
         }
     }
 
-    /// L.
-    ///
-    /// At least 8, whatever the degree of the coefficients.
+    /// L: that of the coefficients, or 8 if theirs is lower.
     pub fn degree(&self) -> usize {
         self.fourier.degree()
     }
 
-    /// The field of Σ αᵢ fᵢ; all fields must share their degree.
+    /// The field of Σ αᵢ fᵢ.
+    ///
+    /// # Errors
+    /// There are no terms, or the fields differ in degree.
     pub fn combine(terms: &[(f64, &Field)]) -> Result<Self, FieldError> {
         let (_, first) = terms.first().ok_or(FieldError::Empty)?;
         let mut out = (*first).clone();
@@ -85,7 +103,10 @@ impl Field {
         Ok(out)
     }
 
-    /// [`Field::combine`] into a field that exists, without allocation.
+    /// Replaces this field by Σ αᵢ fᵢ, without allocation.
+    ///
+    /// # Errors
+    /// A field's degree differs from that of this field.
     pub fn assign(&mut self, terms: &[(f64, &Field)]) -> Result<(), FieldError> {
         let first_degree = self.degree();
         for (index, (_, field)) in terms.iter().enumerate() {
@@ -110,14 +131,15 @@ impl Field {
         Ok(())
     }
 
-    /// f(p), for half of what [`Field::jet`] takes.
+    /// f(p), in half the time of [`Field::jet`].
     pub fn value(&self, p: &Direction) -> f64 {
         let [value, ..] = self.read::<1>(&Place::new(p));
         self.mean + value
     }
 
-    /// f, ∇_S f and the covariant Hessian at p. Leaving out the Hessian would save nothing: the window's
-    /// rows are read for the gradient anyway.
+    /// f, ∇_S f and the covariant Hessian at p.
+    ///
+    /// Leaving out the Hessian would save nothing, since the gradient needs the same rows of the window.
     pub fn jet(&self, p: &Direction) -> Jet {
         let place = Place::new(p);
         let d = self.read::<3>(&place);
@@ -146,7 +168,7 @@ impl Field {
     }
 }
 
-/// A point in the chart whose poles are farther: sin θ is never below √½.
+/// A point in the chart whose poles are farther away: sin θ is never below √½.
 struct Place {
     tilted: bool,
     q: Vector3<f64>,
@@ -240,7 +262,7 @@ impl<const PARTS: usize> WithSimd for Read<'_, PARTS> {
         let along_phi = kernel.derivatives::<S, PARTS>(self.phi - column as f64 - 0.5);
         let mut totals = [[0.0; HALF]; 6];
         for first in [0, HALF] {
-            // Half a row at a time: its three sums stay in registers from the first row to the last.
+            // Half a row at a time, so that its three sums stay in registers from the first row to the last.
             let mut sums = [[0.0; HALF]; PARTS];
             for tap in 0..TAPS {
                 let at = (row + tap) * stride + column + first;
@@ -325,7 +347,7 @@ mod tests {
     }
 
     #[test]
-    fn the_less_costly_reading_gives_the_same_number() {
+    fn the_value_alone_is_the_value_of_the_jet() {
         let field = Field::new(&rough(30));
         for p in places() {
             assert_eq!(field.value(&p), field.jet(&p).value);

@@ -20,7 +20,7 @@ pub struct RingGrid {
 /// Values on a [`RingGrid`], ring after ring.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GridValues {
-    /// Points a ring.
+    /// Points per ring.
     pub longitudes: usize,
     /// Value of ring j, longitude k at j · longitudes + k.
     pub values: Vec<f64>,
@@ -63,7 +63,7 @@ impl RingGrid {
         &self.weights
     }
 
-    /// Points a ring.
+    /// Points per ring.
     pub fn longitudes(&self) -> usize {
         self.longitudes
     }
@@ -93,7 +93,7 @@ impl RingGrid {
             };
         }
         let legendre = Legendre::new(degree);
-        let turns = Turns::new(self.longitudes);
+        let roots = RootsOfUnity::new(self.longitudes);
         let mut column = vec![0.0; degree + 1];
         let mut values = Vec::with_capacity(self.rings.len() * self.longitudes);
         for &(sin, cos) in &self.rings {
@@ -111,7 +111,7 @@ impl RingGrid {
                     odd += pi * beta.as_slice()[centre - m];
                 }
                 let odd = if m == 0 { 0.0 } else { odd };
-                turns.add(m, even * power, odd * power, ring);
+                roots.add(m, even * power, odd * power, ring);
                 power *= sin;
             }
         }
@@ -135,7 +135,7 @@ impl RingGrid {
             return out;
         }
         let legendre = Legendre::new(degree);
-        let turns = Turns::new(self.longitudes);
+        let roots = RootsOfUnity::new(self.longitudes);
         let mut column = vec![0.0; degree + 1];
         let mut beta = Coefficients::zeros(degree);
         let out = beta.as_mut_slice();
@@ -145,7 +145,7 @@ impl RingGrid {
             for m in 0..=degree {
                 let column = &mut column[..=degree - m];
                 legendre.column(m, cos, column);
-                let (even, odd) = turns.project(m, ring);
+                let (even, odd) = roots.project(m, ring);
                 for (l, pi) in (m..).zip(column.iter()) {
                     let centre = l * l + l;
                     out[centre + m] += pi * even * power;
@@ -161,9 +161,9 @@ impl RingGrid {
 }
 
 /// cos and sin of 2πk/n, read with stride m.
-struct Turns(Vec<(f64, f64)>);
+struct RootsOfUnity(Vec<(f64, f64)>);
 
-impl Turns {
+impl RootsOfUnity {
     fn new(longitudes: usize) -> Self {
         let step = std::f64::consts::TAU / longitudes as f64;
         Self(
@@ -271,7 +271,7 @@ mod tests {
         let beta = some_coefficients(13);
         let basis = Basis::new(13);
         let mut work = basis.workspace();
-        // 17 longitudes go the plain way, 30 and 32 the fast one.
+        // 17 longitudes take the direct sum, 30 and 32 the fast Fourier transform.
         for (rings, longitudes) in [(9, 17), (9, 30), (20, 32)] {
             let grid = RingGrid::equiangular(rings, longitudes);
             let values = grid.synthesis(&beta).values;

@@ -1,8 +1,8 @@
-//! Where the harmonic of degree l and order m stands in a coefficient vector.
+//! The positions of degrees l and orders m in a coefficient vector.
 
 /// Position of Y_{l,m} in a coefficient vector: l² + l + m.
 ///
-/// Degrees in order, and inside a degree m = −l … l. Needs |m| ≤ l.
+/// Degrees follow each other, and within a degree m runs from −l to l. Needs |m| ≤ l.
 pub fn position(l: usize, m: isize) -> usize {
     debug_assert!(m.unsigned_abs() <= l, "order {m} beyond degree {l}");
     (l * l + l).wrapping_add_signed(m)

@@ -9,16 +9,17 @@ use pulp::Simd;
 
 use crate::multiply_add::multiply_add;
 
-/// Width of the window in grid points: sums are right to about 1e-14 on a grid twice as fine as needed.
+/// Width of the window in grid points. On a grid twice as fine as the modes need, sums have a relative
+/// error of about 1e-14.
 pub(crate) const TAPS: usize = 16;
 
-/// σ.
+/// σ: how many times finer the grid is than the modes need.
 pub(crate) const OVERSAMPLING: f64 = 2.0;
 
-/// Steps from the first tap's grid point to the one at or below the position.
+/// Grid steps from the first tap to the grid point at or below the position.
 pub(crate) const TAPS_BEFORE: usize = TAPS / 2 - 1;
 
-/// One weight a tap.
+/// One weight per tap.
 pub(crate) type Taps = [f64; TAPS];
 
 /// The first half of the taps; the second is its mirror image.
@@ -89,7 +90,7 @@ impl Kernel {
         out
     }
 
-    /// ∫ φ(d) e^{−2πiξd} dd at ξ cycles a grid step, |ξ| below 1 − 1/2σ.
+    /// ∫ φ(d) e^{−2πiξd} dd at ξ cycles per grid step, |ξ| below 1 − 1/2σ.
     pub(crate) fn transform(&self, frequency: f64) -> f64 {
         let w = TAPS as f64;
         let root = (self.beta * self.beta - (std::f64::consts::PI * w * frequency).powi(2))

@@ -9,7 +9,7 @@
 //! sinᵐθ goes with the azimuthal part as Re, Im (x+iy)ᵐ, so that nothing is ever divided by sin θ.
 //! Π stays below about (1+√2)^l, 1e115 at l = 300; only (x+iy)ᵐ underflows, and is scaled.
 
-/// Constants of the three-term recurrence, one column an order m.
+/// Constants of the three-term recurrence, one column per order m.
 #[derive(Clone, Debug)]
 pub(crate) struct Legendre {
     degree: usize,
@@ -125,7 +125,8 @@ impl Azimuth {
     }
 
     pub(crate) fn fill(&mut self, x: f64, y: f64) {
-        // A direction so close to the axis is the pole: its powers would outrun the scale steps.
+        // A direction this close to the axis counts as the pole: its powers would underflow between two
+        // scale steps.
         let (x, y) = if x.abs().max(y.abs()) < 1e-150 {
             (0.0, 0.0)
         } else {

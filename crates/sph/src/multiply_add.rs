@@ -1,9 +1,11 @@
-//! Multiplication and addition in one step where the processor has it.
+//! Fused multiplication and addition where the processor has the instruction.
 
 use pulp::Simd;
 
-/// a·b + c, rounded once where vectors exist and twice where they do not: every processor that a
-/// vector path is written for has the fused instruction, and elsewhere it would be a slow call.
+/// a·b + c, rounded once on processors with vectors and twice on others.
+///
+/// Every processor for which pulp has vectors also has the fused instruction. On the others
+/// `f64::mul_add` would be a slow call of a library.
 #[inline(always)]
 pub(crate) fn multiply_add<S: Simd>(a: f64, b: f64, c: f64) -> f64 {
     if size_of::<S::f64s>() > size_of::<f64>() {

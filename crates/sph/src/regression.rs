@@ -1,4 +1,30 @@
-//! Least-squares fits of Σ β_{lm} Y_{lm} to samples of a function on the sphere.
+//! Least-squares fits of Σ β_{lm} Y_{lm} to samples of a function on the sphere (Sec. II-C of the paper).
+//!
+//! A fit minimises Σᵢ wᵢ (h(pᵢ) − fᵢ)² + Σ λ (l(l+1))^s β_{lm}² over functions h of degree L. [`Gram`]
+//! assembles the normal equations in one pass over the samples and then solves for any [`Penalty`]; it can
+//! also choose λ. [`qr`] is the dense reference.
+//!
+//! ```
+//! use sph::direction::even_directions;
+//! use sph::regression::{Gram, Samples};
+//!
+//! # fn main() -> Result<(), sph::regression::RegressionError> {
+//! // f(p) = 2 + z with noise of 0.01.
+//! let directions = even_directions(500);
+//! let values: Vec<f64> = directions
+//!     .iter()
+//!     .enumerate()
+//!     .map(|(i, p)| 2.0 + p.z + 0.01 * (78.233 * i as f64).sin())
+//!     .collect();
+//! let samples = Samples { directions: &directions, values: &values };
+//! let gram = Gram::new(samples, 6)?;
+//! let penalty = gram.choose_penalty(2)?;
+//! let beta = gram.solve(samples, penalty)?.coefficients;
+//! // z = √(4π/3) Y_{1,0}.
+//! assert!((beta.get(1, 0) - (4.0 * std::f64::consts::PI / 3.0).sqrt()).abs() < 0.01);
+//! # Ok(())
+//! # }
+//! ```
 
 mod conjugate;
 mod dense;
@@ -24,18 +50,19 @@ pub struct Samples<'a> {
     pub values: &'a [f64],
 }
 
-/// How the least-squares problem is solved.
+/// The solver of the normal equations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Cholesky for degrees up to 16; above, conjugate gradients, and Cholesky where they are slow.
+    /// Cholesky for degrees up to 16; above, conjugate gradients, and Cholesky up to degree 80 if they
+    /// converge slowly.
     #[default]
     Automatic,
-    /// Preconditioned conjugate gradients on the Gram operator: O(L³) an iteration, no matrix. Where
-    /// the matrix of harmonics has a condition beyond some thousands it gives up with
-    /// [`RegressionError::NotConverged`]; a factor serves there, and beyond
-    /// cond(Y) ≈ 1e4, where corrections no longer settle, [`Method::Qr`].
+    /// Preconditioned conjugate gradients on the Gram operator: O(L³) flops per iteration and no matrix.
+    /// If the condition number of the matrix of harmonics exceeds a few thousand, the result is
+    /// [`RegressionError::NotConverged`]. [`Method::Cholesky`] works up to cond(Y) ≈ 1e4, and
+    /// [`Method::Qr`] beyond.
     Conjugate,
-    /// The dense factor of the Gram matrix: O(L⁶) flops, 16 (L+1)⁴ bytes.
+    /// A Cholesky factor of the dense Gram matrix: O(L⁶) flops, 16 (L+1)⁴ bytes.
     Cholesky,
     /// Householder QR of the dense N × (L+1)² matrix: the reference.
     Qr,
@@ -63,7 +90,7 @@ pub enum RegressionError {
         /// Its value.
         value: f64,
     },
-    /// Without a penalty the samples do not determine the coefficients.
+    /// The samples do not determine the coefficients, and there is no penalty.
     #[error(
         "{samples} samples do not determine the {coefficients} coefficients of degree {degree}; lower the degree or use a penalty"
     )]
@@ -75,17 +102,17 @@ pub enum RegressionError {
         /// Degree L.
         degree: usize,
     },
-    /// The weights do not fit the samples: one finite weight ≥ 0 a sample, not all zero.
+    /// A weight is missing, negative or not finite, or all weights are zero.
     #[error(
-        "weight {index} is {value}; expected one finite weight a sample, none negative, one positive"
+        "weight {index} is {value}; expected one finite weight per sample, none negative and at least one positive"
     )]
     Weight {
-        /// Which weight; the number of samples when their number is wrong.
+        /// Which weight; the number of samples if there are more or fewer weights.
         index: usize,
         /// The value found; NaN when there is none.
         value: f64,
     },
-    /// The iteration did not reach its accuracy and the problem is too large to factor.
+    /// The iteration did not reach its accuracy, and the degree is too high for a dense factor.
     #[error(
         "degree {degree} not solved within {iterations} iterations; lower the degree or use a larger penalty"
     )]
@@ -104,7 +131,10 @@ pub enum RegressionError {
 }
 
 impl Samples<'_> {
-    /// Checks lengths and finiteness.
+    /// Checks the lengths and that all numbers are finite.
+    ///
+    /// # Errors
+    /// The lengths differ, there are no samples, or a direction or value is not finite.
     pub fn check(&self) -> Result<(), RegressionError> {
         if self.directions.len() != self.values.len() {
             return Err(RegressionError::Lengths {

@@ -1,8 +1,8 @@
-//! Sums over degrees and longitudes on pairs of mirrored rings, eight pairs at a time.
+//! Synthesis and analysis on pairs of mirrored rings, eight pairs at a time.
 //!
-//! A pair is the ring at z and the ring at −z. Harmonics are even or odd in z with l − m, so one
-//! recurrence serves both; and the two real rings are the real and imaginary part of one complex
-//! sequence, so one Fourier transform serves both.
+//! A pair is the ring at z and the ring at −z. A harmonic is even or odd in z as l − m is, so one
+//! recurrence serves both rings. The two real rings are the real and imaginary part of one complex
+//! sequence, so one Fourier transform serves both as well.
 
 use pulp::Simd;
 
@@ -14,7 +14,7 @@ use crate::two_step::{Folded, TwoStep};
 /// Eight numbers, one per pair of rings.
 pub(crate) type Lane = Lanes<LANES>;
 
-/// Eight pairs of rings at ±z; sin θ beside it.
+/// z and sin θ of the northern rings of eight pairs at ±z.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RingPairs {
     pub(crate) z: Lane,
@@ -28,7 +28,7 @@ pub(crate) struct OrderValues {
     pub(crate) sin: [Lane; 2],
 }
 
-/// The sum of vectors, in their order.
+/// The sum of vectors, added in the order given.
 pub(crate) fn add_up(parts: &[Vec<Folded>], length: usize) -> Vec<Folded> {
     let mut sum = vec![[0.0; 4]; length];
     for part in parts {
@@ -41,7 +41,7 @@ pub(crate) fn add_up(parts: &[Vec<Folded>], length: usize) -> Vec<Folded> {
     sum
 }
 
-/// The sums over l of one order. `power` is sinᵐθ; `folded` are all orders' as by [`TwoStep::fold`].
+/// The sums over l of one order. `power` is sinᵐθ; `folded` holds all orders ([`TwoStep::fold`]).
 #[inline(always)]
 pub(crate) fn order_sums<S: Simd>(
     two_step: &TwoStep,
@@ -127,7 +127,7 @@ fn squares(z: &Lane) -> Lane {
     out
 }
 
-/// before ← (a z² + b) here − before: the next term stands in `before`.
+/// before ← (a z² + b) here − before: `before` then holds the next q.
 #[inline(always)]
 fn step<S: Simd>(before: &mut Lane, here: &Lane, square: &Lane, (a, b): (f64, f64)) {
     for k in 0..LANES {
@@ -145,8 +145,8 @@ fn add_scaled<S: Simd>(sums: &mut [Lane; 4], values: &Lane, term: &Folded) {
     }
 }
 
-/// Adds Σ_k parts[k] values[k]: the four parts of a lane stand in one register, so that nothing has to
-/// be summed across one.
+/// Adds Σ_k parts[k] values[k]. The four parts of a lane are in one register, so no sum across the
+/// lanes of a register is needed.
 #[inline(always)]
 fn add_dots<S: Simd>(term: &mut Folded, parts: &[Folded; LANES], values: &Lane) {
     let mut sums = [*term, [0.0; 4]];
@@ -161,7 +161,7 @@ fn add_dots<S: Simd>(term: &mut Folded, parts: &[Folded; LANES], values: &Lane) 
     }
 }
 
-/// Values of Σ β Y on eight pairs of rings: north real, south imaginary, one element a longitude.
+/// Values of Σ β Y on eight pairs of rings: north real, south imaginary, one element per longitude.
 #[inline(always)]
 pub(crate) fn synthesis<S: Simd>(
     two_step: &TwoStep,
@@ -193,7 +193,7 @@ pub(crate) fn synthesis<S: Simd>(
     fft.run(Sign::Plus, values, scratch);
 }
 
-/// The adjoint of [`synthesis`]: adds Σ value · Y over the rings to `folded`; `values` is used up.
+/// The adjoint of [`synthesis`]: adds Σ value · Y over the rings to `folded`; `values` is overwritten.
 #[inline(always)]
 pub(crate) fn add_analysis<S: Simd>(
     two_step: &TwoStep,

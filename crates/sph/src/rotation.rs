@@ -9,11 +9,11 @@ use crate::grid::{GridValues, RingGrid};
 use crate::index;
 use crate::scattered::Scattered;
 
-/// The function turned by R: (R f)(p) = f(R⁻¹ p).
+/// The function rotated by R: (R f)(p) = f(R⁻¹ p).
 ///
-/// Values at the turned points of a Gauss–Legendre grid determine the turned function exactly, since
-/// a rotation keeps the degree; so nothing but rounding (about 1e-14 of the largest |f|) is lost, at
-/// any degree. About 1200 L² + 60 L³ flops.
+/// A rotation keeps the degree, so the values of f at the rotated points of a Gauss–Legendre grid
+/// determine the result exactly. The only error is rounding, about 1e-14 of the largest |f|, at any
+/// degree. About 1200 L² + 60 L³ flops.
 pub fn rotate(beta: &Coefficients, rotation: &Rotation3<f64>) -> Coefficients {
     let degree = beta.degree();
     let grid = RingGrid::gauss_legendre(degree + 1, smooth_length(2 * degree + 2));
@@ -34,10 +34,11 @@ pub(crate) fn cyclic() -> Rotation3<f64> {
     Rotation3::from_basis_unchecked(&[Vector3::z(), Vector3::x(), Vector3::y()])
 }
 
-/// The function after heat has flowed for a time σ: β_{lm} e^{−l(l+1)σ}.
+/// The solution of the heat equation after time σ ≥ 0: β_{lm} e^{−l(l+1)σ}.
 ///
-/// The weighted spherical harmonics of the paper's reference 13: a smoothing that damps the
-/// ringing of a truncated series. The mean is kept, maxima never grow, and doses add up.
+/// These are the weighted spherical harmonics of the paper's reference 13. The smoothing damps the
+/// ringing of a truncated series. It keeps the mean, and maxima never grow. Smoothing by σ₁ and then by
+/// σ₂ is smoothing by σ₁ + σ₂.
 pub fn heat_flow(beta: &Coefficients, sigma: f64) -> Coefficients {
     let mut out = beta.clone();
     for (i, b) in out.as_mut_slice().iter_mut().enumerate() {

@@ -1,10 +1,10 @@
 //! Sums over all harmonics at many scattered points by a non-uniform Fourier transform.
 //!
-//! Same sums as [`crate::batch`], at a cost that hardly grows with the degree: the harmonics are
-//! summed on a grid of the doubled torus, and each point reads (or writes) its grid neighbours
-//! through a window. Points are sorted by tiles, so that neighbours stay in the nearest cache. Bands
-//! of rows have one owner each and are merged in order, so results do not depend on the number of
-//! threads.
+//! The sums are those of [`crate::batch`], at a cost per point that hardly grows with the degree. The
+//! harmonics are summed on a grid of the double Fourier sphere, and each point is interpolated from (or
+//! spread to) its grid neighbours with a window. Points are sorted by tiles, so that the grid rows they
+//! need stay in the cache. Each band of rows is summed by one task and the bands are merged in order, so
+//! the results do not depend on the number of threads.
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -16,28 +16,30 @@ use crate::index;
 use crate::kernel::{TAPS, Taps};
 use crate::multiply_add::multiply_add;
 
-/// Points handled by one task of [`Scattered::evaluate`].
+/// Points per task of [`Scattered::evaluate`].
 const CHUNK: usize = 2048;
 /// Tiles from pole to pole; a power of two, so that a point's band follows from θ without rounding.
 const BANDS: usize = 64;
-/// Tiles around a band.
+/// Tiles around each band.
 const SECTORS: usize = 64;
-/// Fewest rows owned by one task: the rows of its windows beyond them are added twice.
+/// Fewest rows per task. A task also holds the rows that its windows cover beyond its own.
 const OWNED_ROWS: usize = 24;
 
 /// Points of the sphere, prepared for repeated sums.
+///
+/// Sums are relatively accurate to about 1e-14 of the largest value, at any degree.
 #[derive(Clone, Debug)]
 pub struct Scattered {
-    /// (θ, φ) in turns around their circles, [0, ½] and [0, 1), tile after tile.
+    /// (θ, φ) in whole turns, [0, ½] and [0, 1), tile after tile.
     turns: Vec<[f64; 2]>,
-    /// Their positions in the caller's list.
+    /// Index of each point in the caller's list.
     order: Vec<u32>,
-    /// Where each band of tiles begins, and the number of points.
+    /// Index of the first point of each band of tiles, and the number of points.
     bands: Vec<usize>,
 }
 
 impl Scattered {
-    /// Angles of all points, and their order. At most 2³² points.
+    /// Sorts the points by tiles. At most 2³² points; linear in their number.
     pub fn new(directions: &[Direction]) -> Self {
         let angles: Vec<[f64; 2]> = directions.par_iter().map(turns).collect();
         let mut starts = vec![0_usize; BANDS * SECTORS + 1];
@@ -74,7 +76,7 @@ impl Scattered {
 
     /// f(pᵢ) = Σ β_{lm} Y_{lm}(pᵢ), in the order of the points.
     ///
-    /// Errors are about 1e-14 of the largest |f|. About 900 flops a point and L³ for the grid.
+    /// Errors are about 1e-14 of the largest |f|. About 900 flops per point and L³ for the grid.
     pub fn evaluate(&self, beta: &Coefficients) -> Vec<f64> {
         let fourier = DoubleFourier::new(beta.degree());
         let grid = fourier.synthesis(beta.as_slice());
@@ -99,9 +101,10 @@ impl Scattered {
 
     /// Σᵢ wᵢ Y_{lm}(pᵢ) for all l ≤ L: the adjoint of [`Scattered::evaluate`].
     ///
-    /// `weights` has one entry a point.
+    /// # Panics
+    /// `weights` does not have one entry per point.
     pub fn moments(&self, weights: &[f64], degree: usize) -> Coefficients {
-        assert_eq!(self.len(), weights.len(), "one weight a point");
+        assert_eq!(self.len(), weights.len(), "one weight per point");
         let fourier = DoubleFourier::new(degree);
         let grid = self.spread(&fourier, &self.sorted(weights));
         let mut out = Coefficients::zeros(degree);
@@ -110,7 +113,8 @@ impl Scattered {
         out
     }
 
-    /// Numbers in the order of the tiles: gathered beforehand, since a window would wait for each.
+    /// Weights in the order of the tiles. They are gathered beforehand, so that the loop over the windows
+    /// reads them one after the other.
     fn sorted(&self, weights: &[f64]) -> Vec<f64> {
         let order = self.order.par_iter();
         order.map(|&i| weights[i as usize]).collect()
@@ -148,7 +152,7 @@ impl Scattered {
     }
 }
 
-/// θ and φ in turns.
+/// θ and φ in whole turns.
 fn turns(p: &Direction) -> [f64; 2] {
     let theta = p.x.hypot(p.y).atan2(p.z) / std::f64::consts::TAU;
     let phi = p.y.atan2(p.x) / std::f64::consts::TAU;

@@ -7,8 +7,8 @@ use crate::fft::{Complex, Fft, LANES, smooth_length};
 use crate::ring_pairs::{RingPairs, add_analysis, add_up, synthesis};
 use crate::two_step::{Folded, TwoStep};
 
-/// Whether rings and longitudes suit the functions below: ring j mirrors ring n−1−j, and the
-/// longitudes are a smooth number that tells all orders apart.
+/// Whether the functions below apply: ring j is the mirror image of ring n−1−j, and there are more
+/// than 2L longitudes, a number whose factors are 2, 3 and 5.
 pub(crate) fn suits(rings: &[(f64, f64)], longitudes: usize, degree: usize) -> bool {
     let mirrored = rings
         .iter()
@@ -17,7 +17,7 @@ pub(crate) fn suits(rings: &[(f64, f64)], longitudes: usize, degree: usize) -> b
     mirrored && longitudes > 2 * degree && smooth_length(longitudes) == longitudes
 }
 
-/// Eight pairs of rings from pair number `first` on; missing ones stand on the equator.
+/// Eight pairs of rings from pair number `first` on; lanes without a pair hold the equator.
 fn pairs(rings: &[(f64, f64)], first: usize) -> RingPairs {
     let mut out = RingPairs {
         z: [0.0; LANES],
@@ -64,7 +64,7 @@ pub(crate) fn to_rings(rings: &[(f64, f64)], longitudes: usize, beta: &[f64]) ->
     values
 }
 
-/// Σ weight · value · Y over the grid; one weight a ring.
+/// Σ weight · value · Y over the grid; one weight per ring.
 pub(crate) fn from_rings(
     rings: &[(f64, f64)],
     weights: &[f64],

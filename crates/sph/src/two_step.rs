@@ -1,16 +1,16 @@
-//! Sums over degrees, two degrees a step.
+//! Sums over the degrees of one order by a recurrence that advances two degrees per step.
 //!
-//! Of one order m only P̄_m, P̄_{m+2}, … are computed, by a recurrence in z²; the degrees between are
-//! z times combinations of them, since z P̄_l = ε_{l+1} P̄_{l+1} + ε_l P̄_{l−1}, ε_lm = 1/a_lm of
-//! [`crate::legendre`], and those combinations are taken of the coefficients beforehand (Ishioka
-//! 2018). With P̄_{m+2k} = α_k q_k the steps have the form q_{k+1} = (A_k z² + B_k) q_k − q_{k−1}: a
-//! third of the work of one degree a step.
+//! For an order m only P̄_m, P̄_{m+2}, … are computed, by a recurrence in z². The degrees between follow
+//! from z P̄_l = ε_{l+1} P̄_{l+1} + ε_l P̄_{l−1}, where ε_lm = 1/a_lm of [`crate::legendre`]: they are z
+//! times combinations of the computed ones, and the combination is applied to the coefficients
+//! beforehand (Ishioka 2018). With P̄_{m+2k} = α_k q_k the recurrence is
+//! q_{k+1} = (A_k z² + B_k) q_k − q_{k−1}, a third of the work of one degree per step.
 
 use crate::index;
 use crate::legendre::Legendre;
 
-/// What stands before q_k: cosine and sine of the even degrees, then cosine and sine of z times the
-/// odd ones.
+/// The coefficients of one q_k: cosine and sine parts of degree m + 2k, then cosine and sine parts of
+/// z times the odd degrees.
 pub(crate) type Folded = [f64; 4];
 
 /// The recurrences of all orders up to a degree.
@@ -19,13 +19,13 @@ pub(crate) struct TwoStep {
     degree: usize,
     /// P̄_m^m / sinᵐθ.
     first: Vec<f64>,
-    /// (A_k, B_k), order after order; as many as folded.
+    /// (A_k, B_k), order after order.
     steps: Vec<(f64, f64)>,
     /// α_k.
     scales: Vec<f64>,
     /// (1/ε_{m+2k+1}, ε_{m+2k+2}); the first is zero where there is no such degree.
     links: Vec<(f64, f64)>,
-    /// Where each order begins, and the number of folded.
+    /// Index of the first step of each order, and the number of steps.
     starts: Vec<usize>,
 }
 
@@ -77,12 +77,12 @@ impl TwoStep {
         self.degree
     }
 
-    /// Number of folded of all orders.
+    /// Number of steps of all orders.
     pub(crate) fn len(&self) -> usize {
         self.steps.len()
     }
 
-    /// The folded of order m.
+    /// Indices of the steps of order m.
     #[inline(always)]
     pub(crate) fn range(&self, m: usize) -> std::ops::Range<usize> {
         self.starts[m]..self.starts[m + 1]
@@ -94,7 +94,7 @@ impl TwoStep {
         (self.first[m], &self.steps[self.range(m)])
     }
 
-    /// What stands before every q_k in Σ β P̄.
+    /// The coefficient of every q_k in Σ β P̄.
     pub(crate) fn fold(&self, beta: &[f64]) -> Vec<Folded> {
         let at = |l: usize, m: usize| {
             let centre = l * l + l;

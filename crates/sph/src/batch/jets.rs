@@ -1,8 +1,8 @@
-//! Values, gradients and Hessians at many scattered points, four points in one register.
+//! Values, gradients and Hessians at many scattered points, with one point per vector lane.
 //!
 //! With F the polynomial extension of f to R³, ∂F/∂z of order m is a sum over Π^{m+1}, since
-//! dΠ_l^m/dz = k_lm Π_l^{m+1}: one recurrence an order serves the value and all derivatives, with
-//! coefficients multiplied beforehand.
+//! dΠ_l^m/dz = k_lm Π_l^{m+1}. So one recurrence per order serves the value and all derivatives; the
+//! factors k_lm are multiplied into the coefficients beforehand.
 
 use nalgebra::{Matrix3, Vector3};
 use pulp::{Arch, Simd, WithSimd};
@@ -15,23 +15,24 @@ use crate::lanes::{Lanes, coordinates, multiply_complex};
 use crate::legendre::{Legendre, derivative_factor};
 use crate::multiply_add::multiply_add;
 
-/// Points that go through the recurrences together: their sums fill the registers.
+/// Points that go through the recurrences together: fewer than in the parent module, since nine sums
+/// per point have to fit the vector registers.
 const LANES: usize = 4;
 type Lane = Lanes<LANES>;
 
-/// Points of one task.
+/// Points per task.
 const CHUNK: usize = 64;
 
 /// f, ∇_S f and the covariant Hessian at all points, as [`crate::Basis::jet`] gives them.
 ///
-/// About 9 L² flops a point.
+/// About 9 L² flops per point.
 pub fn jets(beta: &Coefficients, directions: &[Direction]) -> Vec<Jet> {
     let sums = ambient_sums::<3>(beta, directions);
     let jet = |(ambient, p): (&Ambient, &Direction)| ambient.jet(p);
     sums.iter().zip(directions).map(jet).collect()
 }
 
-/// f and ∇_S f at all points. About 7 L² flops a point.
+/// f and ∇_S f at all points. About 7 L² flops per point.
 pub fn values_and_gradients(beta: &Coefficients, directions: &[Direction]) -> Vec<Harmonic> {
     let sums = ambient_sums::<2>(beta, directions);
     let harmonic = |(ambient, p): (&Ambient, &Direction)| Harmonic {
@@ -41,7 +42,7 @@ pub fn values_and_gradients(beta: &Coefficients, directions: &[Direction]) -> Ve
     sums.iter().zip(directions).map(harmonic).collect()
 }
 
-/// F and its first PARTS − 1 derivatives at all points; what is not asked for stays zero.
+/// F and its derivatives up to order PARTS − 1 at all points; higher derivatives stay zero.
 fn ambient_sums<const PARTS: usize>(beta: &Coefficients, directions: &[Direction]) -> Vec<Ambient> {
     let legendre = Legendre::new(beta.degree());
     let coefficients = by_order::<PARTS>(beta);
@@ -60,7 +61,7 @@ fn ambient_sums<const PARTS: usize>(beta: &Coefficients, directions: &[Direction
 }
 
 /// β_{l,±(n−d)} times the factors of d derivatives, d = 0 … PARTS − 1, for every order n of Π and
-/// l = n … L: what stands before Π_l^n in the d-th derivative of order n − d. Cosine, then sine.
+/// l = n … L: the coefficient of Π_l^n in the d-th derivative of order n − d. Cosine, then sine.
 fn by_order<const PARTS: usize>(beta: &Coefficients) -> Vec<[[f64; 2]; PARTS]> {
     let degree = beta.degree();
     let mut out = Vec::with_capacity((degree + 1) * (degree + 2) / 2);
@@ -172,7 +173,7 @@ fn add<const PARTS: usize>(
 /// F, F_x, F_y, F_z, F_xx, F_xy, F_xz, F_yz, F_zz.
 const TERMS: usize = 9;
 
-/// Adds what order n of Π brings: the value's share of order m = n, ∂_z's of n − 1, ∂_z²'s of n − 2.
+/// Adds the terms of order n of Π: the value for m = n, ∂_z for m = n − 1, ∂_z² for m = n − 2.
 /// `powers` are (x+iy)^n, (x+iy)^{n−1}, (x+iy)^{n−2}.
 #[inline(always)]
 fn add_order<const PARTS: usize>(
@@ -185,7 +186,7 @@ fn add_order<const PARTS: usize>(
         let power = |d: usize| powers.get(d).map_or((0.0, 0.0), |p| (p[0][k], p[1][k]));
         for (d, part) in sums.iter().enumerate() {
             let (c, s) = (part[0][k], part[1][k]);
-            // Along φ̂: c cos + s sin of order m; ∂_x and ∂_y lower the power and bring a factor m.
+            // c Re (x+iy)ᵐ + s Im (x+iy)ᵐ; ∂_x and ∂_y lower the power by one and multiply by m.
             let m = n.saturating_sub(d) as f64;
             let ((re, im), (re1, im1), (re2, im2)) = (power(d), power(d + 1), power(d + 2));
             let here = c * re + s * im;
@@ -213,7 +214,8 @@ fn add_order<const PARTS: usize>(
     }
 }
 
-/// One point's sums; F is harmonic in x and y order by order, so F_yy = −F_xx.
+/// The sums at one point as a value, gradient and Hessian. Every order of F is harmonic in x and y, so
+/// F_yy = −F_xx.
 fn gathered(t: &[f64; TERMS]) -> Ambient {
     Ambient {
         value: t[0],

@@ -1,4 +1,4 @@
-//! The vectorised passes of a [`DoubleFourier`] transform, each with its adjoint.
+//! The vectorised steps of a [`DoubleFourier`] transform, each with its adjoint.
 
 use pulp::{Simd, WithSimd};
 
@@ -9,7 +9,7 @@ use crate::lanes::multiply;
 use crate::ring_pairs::{Lane, OrderValues, RingPairs, add_order, order_sums};
 use crate::two_step::{Folded, TwoStep};
 
-/// Eight orders at a place.
+/// Eight orders of one ring or row, from order `first` on.
 #[inline(always)]
 fn load(modes: &Modes, row: usize, first: usize) -> Complex {
     let at = row * modes.stride + first;

@@ -2,46 +2,49 @@
 
 use super::lanczos::Lanczos;
 
-/// Decrements that the error estimate looks back on.
+/// Number of decrements in the error estimate.
 const WINDOW: usize = 4;
 
-/// What an iteration found.
+/// The result of an iteration.
 pub(super) struct Outcome {
     pub(super) solution: Vec<f64>,
-    /// xᵀMx − 2bᵀx at the solution: the least value of the quadratic, up to the error.
+    /// xᵀMx − 2bᵀx at the solution.
     pub(super) quadratic: f64,
     pub(super) iterations: usize,
     pub(super) converged: bool,
-    /// Whether it went on to [`Limits::fine`].
+    /// Whether [`Limits::fine`] applied.
     pub(super) fine: bool,
 }
 
-/// How far an iteration goes.
+/// When an iteration stops.
+///
+/// It stops at a squared error, in the norm of M, of at most share · |offset + q|, where q is the value
+/// of the quadratic; or at `floor`, if that is larger.
 #[derive(Clone, Copy)]
 pub(super) struct Limits {
     /// Most iterations.
     pub(super) iterations: usize,
-    /// Squared error allowed, as a share of offset + (value of the quadratic) ...
+    /// Relative tolerance of the squared error.
     pub(super) share: f64,
-    /// ... with this offset, and ...
+    /// Added to the quadratic.
     pub(super) offset: f64,
-    /// ... never asked to be below this.
+    /// Absolute tolerance of the squared error.
     pub(super) floor: f64,
-    /// Where the system proves well conditioned, how far it goes on.
+    /// A smaller tolerance for well conditioned systems.
     pub(super) fine: Option<Fine>,
 }
 
-/// A second aim for well conditioned systems.
+/// A tolerance for well conditioned systems.
 #[derive(Clone, Copy)]
 pub(super) struct Fine {
-    /// Largest condition number of CM ...
+    /// Largest condition number of CM for which it applies.
     pub(super) condition: f64,
-    /// ... for this share in place of [`Limits::share`].
+    /// Replaces [`Limits::share`].
     pub(super) share: f64,
 }
 
 impl Limits {
-    /// A squared error of `share` times the squared size of the solution.
+    /// A squared error of `share` times the squared norm of the solution.
     pub(super) fn to(share: f64, iterations: usize) -> Self {
         Self {
             iterations,
@@ -56,7 +59,8 @@ impl Limits {
 /// Solves Mx = b for a positive definite M, given as a function, with a preconditioner C ≈ M⁻¹.
 ///
 /// Step k lowers the quadratic xᵀMx − 2bᵀx by α rᵀCr, and the sum of all later decrements is the
-/// squared error in the norm of M (Hestenes and Stiefel 1952): the last few stand for it.
+/// squared error in the norm of M (Hestenes and Stiefel 1952). The sum of the last few decrements estimates
+/// it.
 pub(super) fn solve(
     apply: impl Fn(&[f64]) -> Vec<f64>,
     precondition: impl Fn(&[f64]) -> Vec<f64>,
@@ -80,7 +84,7 @@ pub(super) fn solve(
     let mut progress = Progress::new(limits);
     for iteration in 0..limits.iterations {
         if energy.is_nan() || energy <= 0.0 {
-            // Nothing is left, or the matrix is not positive definite in floating point.
+            // The residual is zero, or the matrix is not positive definite in floating point.
             return progress.outcome(x, quadratic, iteration, energy == 0.0);
         }
         let image = apply(&direction);
@@ -109,14 +113,14 @@ pub(super) fn solve(
     progress.outcome(x, quadratic, limits.iterations, false)
 }
 
-/// How far an iteration has come.
+/// The state of the stopping test.
 struct Progress {
     limits: Limits,
     /// The last decrements.
     recent: [f64; WINDOW],
     at: usize,
     steps: Lanczos,
-    /// Whether the fine aim is the one in force.
+    /// Whether the tolerance for well conditioned systems applies.
     fine: bool,
 }
 

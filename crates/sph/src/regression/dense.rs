@@ -20,10 +20,10 @@ pub(super) struct Dense {
 
 /// A Cholesky factor of YᵀWY + penalty.
 pub(super) struct Factor<'a> {
-    /// The lower triangle; what is above it has no meaning.
+    /// The lower triangle; the entries above it are undefined.
     lower: Mat<f64>,
     order: &'a Order,
-    /// Largest pivot over smallest: never above the condition number of the square root.
+    /// Largest pivot over smallest: at most the condition number of the square root of the matrix.
     pub(super) pivot_ratio: f64,
 }
 
@@ -63,8 +63,8 @@ impl Dense {
     }
 }
 
-/// Parts that large products are split into: as many on every machine, since the order of additions,
-/// and so the last bits, follow from it.
+/// The number of parts into which large products are split. It is the same on every machine, since the
+/// order of additions, and so the last bits of the result, depend on it.
 fn shares() -> Par {
     Par::rayon(4)
 }
@@ -196,7 +196,7 @@ fn assemble(density: &Coefficients, degree: usize, order: &Order) -> Mat<f64> {
     matrix
 }
 
-/// P̄_l^m at every ring, one rings × (L−m+1) matrix an order.
+/// P̄_l^m at every ring, one rings × (L−m+1) matrix per order.
 fn legendre_tables(degree: usize, nodes: &[f64]) -> Vec<Mat<f64>> {
     let legendre = Legendre::new(degree);
     let mut column = vec![0.0; degree + 1];

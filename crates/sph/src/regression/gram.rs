@@ -1,10 +1,10 @@
-//! Least squares through the Gram matrix, which is never formed from the points.
+//! Least squares through the Gram matrix YᵀWY, which is never formed from the points.
 //!
-//! With the moments ρ_{LM} = Σᵢ wᵢ Y_{LM}(pᵢ) up to degree 2L, the density ρ = Σ ρ_{LM} Y_{LM} has
-//! the same inner products with products of two harmonics of degree ≤ L as the samples have:
-//! (YᵀWY)_{ab} = ∫ ρ Y_a Y_b, exactly, and Gauss–Legendre rings exact to degree 4L integrate it.
-//! One pass over the points; nothing after it depends on their number. Applied as multiplication
-//! by ρ on the grid it serves conjugate gradients; assembled ring by ring it can be factored.
+//! The moments ρ_{LM} = Σᵢ wᵢ Y_{LM}(pᵢ) up to degree 2L define a density ρ = Σ ρ_{LM} Y_{LM}. For
+//! harmonics of degree ≤ L, (YᵀWY)_{ab} = ∫ ρ Y_a Y_b exactly, and Gauss–Legendre rings exact to degree
+//! 4L give the integral. One pass over the points yields the moments; nothing after it depends on the
+//! number of points. For conjugate gradients the matrix is applied as multiplication by ρ on the grid;
+//! for a Cholesky factor it is assembled ring by ring.
 
 mod likelihood;
 
@@ -20,17 +20,21 @@ use super::{Method, Penalty, RegressionError, Samples, qr};
 use crate::coefficients::Coefficients;
 use crate::index;
 
-/// Up to here a dense factor costs less than iterating.
+/// Up to this degree a dense factor costs less than iterations.
 const SMALL_DEGREE: usize = 16;
-/// Up to here a dense factor is affordable where the iteration fails.
+/// Up to this degree a dense factor is used if the iteration fails.
 const DENSE_DEGREE: usize = 80;
 
-/// A right-hand side, where to start from, and how far to go.
+/// A right-hand side, a start vector, and when to stop.
 pub(super) type Task<'a> = (&'a [f64], Option<&'a [f64]>, Limits);
 
-/// Most iterations where nothing else could serve.
+/// Most iterations if there is no other method.
 pub(super) const MOST_ITERATIONS: usize = 5000;
+
 /// The normal equations of a set of samples at one degree.
+///
+/// They are assembled once and solved for any penalty. The solves take the samples again, since the last
+/// digits come from their residuals.
 pub struct Gram {
     pub(super) degree: usize,
     samples: usize,
@@ -39,7 +43,7 @@ pub struct Gram {
     density: Coefficients,
     /// YᵀWY as multiplication by ρ.
     operator: Multiplier,
-    /// Multiplication by 1/ρ̃, with ρ̃ smooth and positive.
+    /// Multiplication by 1/ρ̃, where ρ̃ is smooth and positive: the preconditioner.
     inverse: Multiplier,
     /// YᵀW(f − mean), position l²+l+m.
     right: Vec<f64>,
@@ -50,7 +54,7 @@ pub struct Gram {
     dense: OnceLock<Dense>,
 }
 
-/// A solved system: what [`Gram::solve`] found, and how well posed it was.
+/// The solution of [`Gram::solve`] and its condition number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
     /// β.
@@ -60,12 +64,18 @@ pub struct Solution {
 }
 
 impl Gram {
-    /// The equations of unweighted samples. About 2,000 flops a point and 50 L³.
+    /// The equations of unweighted samples. About 2,000 flops per point and 50 L³.
+    ///
+    /// # Errors
+    /// As [`Samples::check`].
     pub fn new(samples: Samples, degree: usize) -> Result<Self, RegressionError> {
         Self::build(samples, None, degree)
     }
 
-    /// The equations of samples with weights ≥ 0, one a sample: Σ wᵢ (h(pᵢ) − fᵢ)².
+    /// The equations of samples with one weight ≥ 0 per sample: Σ wᵢ (h(pᵢ) − fᵢ)².
+    ///
+    /// # Errors
+    /// As [`Samples::check`], and [`RegressionError::Weight`].
     pub fn weighted(
         samples: Samples,
         weights: &[f64],
@@ -110,9 +120,11 @@ impl Gram {
         self.degree
     }
 
-    /// argmin Σᵢ wᵢ (h(pᵢ) − fᵢ)² + penalty, refined with the true residual.
+    /// argmin Σᵢ wᵢ (h(pᵢ) − fᵢ)² + penalty, refined with the residuals of the samples, and its condition
+    /// number. `samples` are those that the system was assembled from.
     ///
-    /// `samples` are those the system was assembled from.
+    /// # Errors
+    /// As [`Gram::coefficients`].
     pub fn solve(&self, samples: Samples, penalty: Penalty) -> Result<Solution, RegressionError> {
         let coefficients = self.coefficients(samples, penalty, Method::Automatic)?;
         Ok(Solution {
@@ -121,7 +133,11 @@ impl Gram {
         })
     }
 
-    /// β alone, without its condition.
+    /// β alone, by a given method. `samples` are those that the system was assembled from.
+    ///
+    /// # Errors
+    /// λ is not a finite number ≥ 0, the samples do not determine the coefficients, or the solution did not
+    /// reach its accuracy.
     pub fn coefficients(
         &self,
         samples: Samples,
@@ -149,6 +165,9 @@ impl Gram {
     }
 
     /// Condition number of [√W Y; √penalty], to about ten per cent, by power and inverse iteration.
+    ///
+    /// # Errors
+    /// As [`Gram::coefficients`].
     pub fn condition(&self, penalty: Penalty) -> Result<f64, RegressionError> {
         penalty.check()?;
         let start: Vec<f64> = (0..index::count(self.degree))
@@ -173,12 +192,12 @@ impl Gram {
         Ok((largest * inverse).sqrt())
     }
 
-    /// Whether the factor is at hand or cheap.
+    /// Whether the dense matrix exists already or is cheap.
     fn prefers_dense(&self) -> bool {
         self.degree <= SMALL_DEGREE || self.dense.get().is_some()
     }
 
-    /// What a factor costs in iterations, where one can be had.
+    /// The number of iterations that cost about as much as a dense factor, if one is affordable.
     fn most_iterations(&self) -> usize {
         if self.degree <= DENSE_DEGREE {
             200 + index::count(self.degree) / 5
@@ -191,14 +210,18 @@ impl Gram {
     ///
     /// Model: fᵢ = h(pᵢ) + noise of variance σ²/wᵢ, β_{lm} ~ N(0, σ² / (λ(l(l+1))^power)) for l ≥ 1,
     /// flat in the constant. Its derivative vanishes where
-    /// (N−1) λ βᵀDβ / RSS = Σ over l ≥ 1 of the degrees of freedom, with RSS the penalised residual;
-    /// the root is found by secant steps in log λ within λ/N ∈ [1e−14, 1] to a twentieth of a decade,
-    /// the degrees of freedom by Hutchinson's estimate with fixed signs.
+    /// (N−1) λ βᵀDβ / RSS = Σ over l ≥ 1 of the degrees of freedom, where RSS is the penalised sum of
+    /// squared residuals. Secant steps in log λ find the root within λ/N ∈ [1e−14, 1] to a twentieth of a
+    /// decade; Hutchinson's estimate with fixed signs gives the degrees of freedom.
+    ///
+    /// # Errors
+    /// A system on the way could not be solved ([`RegressionError::NotConverged`] or
+    /// [`RegressionError::RankDeficient`]).
     pub fn choose_penalty(&self, power: i32) -> Result<Penalty, RegressionError> {
         likelihood::choose(self, power)
     }
 
-    /// Number of samples that count.
+    /// Number of samples with a positive weight.
     pub(super) fn samples(&self) -> usize {
         self.samples
     }
@@ -211,7 +234,7 @@ impl Gram {
         self.sum_squares
     }
 
-    /// M⁻¹ b to the limits, by whatever serves.
+    /// M⁻¹ b for several right-hand sides to the given limits, by iteration or by the factor.
     pub(super) fn solve_roughly(
         &self,
         penalty: Penalty,
@@ -258,7 +281,7 @@ impl Gram {
         let shares: Vec<f64> = (0..right.len()).map(share).collect();
         let scaled =
             |x: &[f64]| -> Vec<f64> { x.iter().zip(&shares).map(|(x, p)| x * p).collect() };
-        // (ρ + λd)⁻¹ ≈ p ρ̃⁻¹ p + (1−p) p / ρ̄ with p = 1/(1 + λd/ρ̄): exact where ρ is constant.
+        // (ρ + λd)⁻¹ ≈ p ρ̃⁻¹ p + (1−p) p / ρ̄ with p = 1/(1 + λd/ρ̄): exact if ρ is constant.
         let precondition = |r: &[f64]| {
             let mut out = scaled(&self.inverse.apply(&scaled(r)));
             for ((out, r), p) in out.iter_mut().zip(r).zip(&shares) {
@@ -292,7 +315,7 @@ impl Gram {
             .dense
             .get_or_init(|| Dense::new(&self.density, self.degree));
         let factor = dense.factor(penalty).ok_or_else(|| self.rank_deficient())?;
-        // The pivots of a Gram matrix are those of a triangle R; below √ε they are rounding.
+        // The pivots of the factor are those of R in Y = QR; pivots below √ε of the largest are rounding.
         if factor.pivot_ratio < 1e8 || penalty.lambda > 0.0 {
             Ok(factor)
         } else {
@@ -345,7 +368,8 @@ fn check_weights(weights: &[f64], samples: usize) -> Result<(), RegressionError>
     Ok(())
 }
 
-/// Multiplication by 1/ρ̃: ρ smoothed over about three wave lengths and kept above 2 % of its mean.
+/// Multiplication by 1/ρ̃, where ρ̃ is ρ smoothed over about three wave lengths and at least 2 % of its
+/// mean.
 fn inverse_density(density: &Coefficients, degree: usize) -> Multiplier {
     let mut smooth = density.with_degree(degree);
     let width = 0.35 * degree.max(1) as f64;

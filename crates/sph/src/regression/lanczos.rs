@@ -1,18 +1,18 @@
-//! The condition of a preconditioned system, as conjugate gradients come to know it.
+//! The condition number of a preconditioned system from the steps of conjugate gradients.
 
-/// The tridiagonal matrix that the steps of conjugate gradients build: its eigenvalues lie within
-/// those of the preconditioned system and spread towards their ends.
+/// The tridiagonal matrix of the Lanczos process that conjugate gradients run. Its extreme eigenvalues
+/// lie within the spectrum of the preconditioned system and converge to its ends.
 #[derive(Default)]
 pub(super) struct Lanczos {
     diagonal: Vec<f64>,
-    /// Squares of the entries beside the diagonal, the first one zero.
+    /// Squares of the off-diagonal entries; the first one is zero.
     beside: Vec<f64>,
-    /// What the last step leaves to the next row: on the diagonal, and beside it squared.
+    /// The contribution of the last step to the next row: on the diagonal, and off it squared.
     carried: (f64, f64),
 }
 
 impl Lanczos {
-    /// One more step: its length α and the ratio β of the energies after and before it.
+    /// Adds a step of length α after which the energy is β times the energy before.
     pub(super) fn push(&mut self, alpha: f64, beta: f64) {
         self.diagonal.push(1.0 / alpha + self.carried.0);
         self.beside.push(self.carried.1);
@@ -34,7 +34,7 @@ impl Lanczos {
         largest / smallest
     }
 
-    /// Where `keep`, true below, of the number of eigenvalues below turns false.
+    /// The point, to 2 %, at which `keep` of the number of smaller eigenvalues turns from true to false.
     fn bisect(&self, mut low: f64, mut high: f64, keep: impl Fn(usize) -> bool) -> f64 {
         while high > 1.02 * low {
             let middle = (low * high).sqrt();
@@ -47,7 +47,7 @@ impl Lanczos {
         high
     }
 
-    /// Sturm's count.
+    /// Number of eigenvalues below x, by Sturm's sequence.
     fn eigenvalues_below(&self, x: f64) -> usize {
         let mut count = 0;
         let mut pivot = 1.0_f64;

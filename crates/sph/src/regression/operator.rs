@@ -1,4 +1,4 @@
-//! Multiplication by a function on the sphere, projected back to degree L, without a matrix.
+//! Multiplication by a function on the sphere followed by projection to degree L, without a matrix.
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -9,9 +9,9 @@ use crate::grid::gauss_legendre;
 use crate::ring_pairs::{RingPairs, add_analysis, add_up, synthesis};
 use crate::two_step::{Folded, TwoStep};
 
-/// RingPairs of rings that one task owns, in units of [`LANES`]; fixed, so that sums never depend on
-/// the number of threads.
-const BLOCKS_A_TASK: usize = 4;
+/// Blocks of [`LANES`] pairs of rings per task. It is fixed, so that sums do not depend on the number of
+/// threads.
+const BLOCKS_PER_TASK: usize = 4;
 
 /// b ↦ Sᵀ diag(ω g) S b with S the degree-L synthesis on a Gauss–Legendre grid: the coefficients up
 /// to degree L of g times the function b, whenever the grid is exact for their product.
@@ -64,13 +64,13 @@ impl Multiplier {
         }
     }
 
-    /// The product's coefficients. About 6·rings·L² flops and two Fourier transforms a ring.
+    /// The product's coefficients. About 6·rings·L² flops and two Fourier transforms per ring.
     pub(super) fn apply(&self, beta: &[f64]) -> Vec<f64> {
         let n = self.fft.length();
         let folded = &self.two_step.fold(beta);
-        let tasks = self.blocks.par_chunks(BLOCKS_A_TASK);
+        let tasks = self.blocks.par_chunks(BLOCKS_PER_TASK);
         let parts: Vec<Vec<Folded>> = tasks
-            .zip(self.factors.par_chunks(BLOCKS_A_TASK * n))
+            .zip(self.factors.par_chunks(BLOCKS_PER_TASK * n))
             .map(|(blocks, factors)| {
                 let mut out = vec![[0.0; 4]; folded.len()];
                 Arch::new().dispatch(Apply {
@@ -95,7 +95,7 @@ fn ring_pairs(rings: usize) -> (Vec<RingPairs>, Vec<Complex>) {
     let mut places = Vec::with_capacity(blocks);
     let mut shares = Vec::with_capacity(blocks);
     for b in 0..blocks {
-        // Lanes beyond the last pair stand on the equator with weight zero.
+        // Lanes beyond the last pair hold the equator with weight zero.
         let mut place = RingPairs {
             z: [0.0; LANES],
             sin: [1.0; LANES],

@@ -7,7 +7,7 @@ use super::RegressionError;
 /// With ΔY = −l(l+1)Y this is λ ∫ |Δ^{power/2} f|². The constant is never penalised.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Penalty {
-    /// λ ≥ 0, in units of samples: it competes with Σᵢ.
+    /// λ ≥ 0, relative to a sum over samples: twice as many samples need twice the λ.
     pub lambda: f64,
     /// Exponent of l(l+1).
     pub power: i32,
@@ -25,7 +25,7 @@ impl Penalty {
         self.lambda * roughness(l, self.power)
     }
 
-    /// Refuses a λ that is negative or not finite.
+    /// An error if λ is negative or not finite.
     pub(super) fn check(&self) -> Result<(), RegressionError> {
         if self.lambda >= 0.0 && self.lambda.is_finite() {
             Ok(())

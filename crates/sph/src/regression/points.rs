@@ -4,7 +4,7 @@ use crate::coefficients::Coefficients;
 use crate::direction::Direction;
 use crate::{batch, scattered::Scattered};
 
-/// Sums over the points: by a non-uniform Fourier transform where it pays.
+/// Sums over the points: direct for few points, by a non-uniform Fourier transform for many.
 pub(super) enum Points {
     Few,
     Many(Scattered),
@@ -12,7 +12,7 @@ pub(super) enum Points {
 
 impl Points {
     pub(super) fn new(directions: &[Direction], degree: usize) -> Self {
-        // A point costs the window's squares, or every harmonic; the grid costs L³ once.
+        // A point costs the square of the window's width instead of L²; the grid costs L³ once.
         if directions.len() > 400 && degree > 8 {
             Self::Many(Scattered::new(directions))
         } else {

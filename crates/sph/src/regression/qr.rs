@@ -10,10 +10,13 @@ use crate::index;
 
 /// argmin Σᵢ (h(pᵢ) − fᵢ)² + Σ λ(l(l+1))^s β_{lm}² over h of degree L (Sec. II-C of the paper).
 ///
-/// The penalty enters as (L+1)² more rows, so the normal equations are never formed. Needs
-/// 8·(N + (L+1)²)·(L+1)² bytes and about 2·N·(L+1)⁴ flops: 520 MB and seconds for N = 25,000,
-/// L = 50. Without a penalty fewer samples than coefficients, or a numerically singular triangle,
-/// is [`RegressionError::RankDeficient`].
+/// The penalty adds (L+1)² rows to the matrix, so the normal equations are never formed. Needs
+/// 8·(N + (L+1)²)·(L+1)² bytes and about 2·N·(L+1)⁴ flops: 520 MB and several seconds for N = 25,000 and
+/// L = 50.
+///
+/// # Errors
+/// As [`Samples::check`]; λ is not a finite number ≥ 0; or there are fewer rows than coefficients or the
+/// triangle is numerically singular ([`RegressionError::RankDeficient`]).
 pub fn fit(
     samples: Samples,
     degree: usize,
@@ -22,7 +25,7 @@ pub fn fit(
     fit_weighted(samples, None, degree, penalty)
 }
 
-/// [`fit`] with a weight ≥ 0 a sample: Σᵢ wᵢ (h(pᵢ) − fᵢ)².
+/// [`fit`] with one weight ≥ 0 per sample: Σᵢ wᵢ (h(pᵢ) − fᵢ)².
 pub(super) fn fit_weighted(
     samples: Samples,
     weights: Option<&[f64]>,

@@ -1,4 +1,4 @@
-//! Solutions of the normal equations to the accuracy of the samples themselves.
+//! Solutions of the normal equations, refined with the residuals of the samples.
 
 use super::conjugate::{Fine, Limits, dot};
 use super::gram::Gram;
@@ -6,7 +6,7 @@ use super::{Penalty, RegressionError, Samples};
 use crate::coefficients::Coefficients;
 use crate::index;
 
-/// Most corrections by the true residual, and the share of β that the last one may be.
+/// Most corrections, and the largest relative size of the last one.
 const MOST_CORRECTIONS: usize = 6;
 const SETTLED: f64 = 1e-6;
 
@@ -14,8 +14,8 @@ const SETTLED: f64 = 1e-6;
 /// from their mean by no more.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Where (ρ̃⁻¹ YᵀWY) has at most this condition number, sums on the grid lose no more than three of
-/// their fourteen digits on the way to β, and the samples need not be asked again.
+/// If ρ̃⁻¹ YᵀWY has at most this condition number, β loses at most three of the fourteen digits of the
+/// sums on the grid, and no correction from the samples is needed.
 const WELL_POSED: Fine = Fine {
     condition: 100.0,
     share: 1e-24,
@@ -53,7 +53,7 @@ impl Gram {
         })
     }
 
-    /// Corrects β by what the samples themselves say about its error, until that settles.
+    /// Corrects β with the residuals of the samples until the corrections are small.
     fn refine(
         &self,
         samples: Samples,
@@ -79,7 +79,7 @@ impl Gram {
         })
     }
 
-    /// What β leaves of the normal equations, as the samples themselves say.
+    /// The residual of the normal equations at β, computed from the residuals of the samples.
     fn gradient(&self, samples: Samples, penalty: Penalty, beta: &[f64]) -> Vec<f64> {
         let fitted = self.points.evaluate(samples.directions, beta);
         let mut residual: Vec<f64> = samples
@@ -104,7 +104,7 @@ impl Gram {
         gradient
     }
 
-    /// The fit of the samples from that of their differences from the mean.
+    /// Adds the mean of the samples to the fit of their differences from it.
     fn finish(&self, mut beta: Vec<f64>) -> Result<Coefficients, RegressionError> {
         beta[0] += self.mean * (4.0 * std::f64::consts::PI).sqrt();
         Coefficients::new(beta).map_err(|_| self.rank_deficient())

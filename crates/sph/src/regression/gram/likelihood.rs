@@ -1,4 +1,5 @@
-//! The choice of λ by restricted marginal likelihood, from solutions alone: no determinant.
+//! The choice of λ by restricted marginal likelihood, from solutions of the equations without a
+//! determinant.
 
 use super::Gram;
 use crate::index;
@@ -6,14 +7,14 @@ use crate::regression::conjugate::Limits;
 use crate::regression::penalty::roughness;
 use crate::regression::{Penalty, RegressionError};
 
-/// Range of log₁₀(λ/N), and where the search begins.
+/// Range of log₁₀(λ/N), and the start of the search.
 const RANGE: (f64, f64) = (-14.0, 0.0);
 const START: f64 = -8.0;
 /// Longest step, and the step that ends the search, in decades.
 const LONGEST: f64 = 2.0;
 const SHORTEST: f64 = 0.05;
 
-/// Where the derivative of the likelihood in log λ changes sign.
+/// The root of the derivative of the likelihood by log λ.
 pub(super) fn choose(gram: &Gram, power: i32) -> Result<Penalty, RegressionError> {
     let samples = gram.samples() as f64;
     let penalty = |log: f64| Penalty {
@@ -27,8 +28,8 @@ pub(super) fn choose(gram: &Gram, power: i32) -> Result<Penalty, RegressionError
     Ok(penalty(root))
 }
 
-/// log of (N−1) λ βᵀDβ / RSS over the degrees of freedom beyond the constant: grows with λ, zero at
-/// the stationary point.
+/// log of (N−1) λ βᵀDβ / RSS divided by the degrees of freedom beyond the constant. It grows with λ and
+/// is zero at the stationary point.
 fn balance(
     gram: &Gram,
     penalty: Penalty,
@@ -44,7 +45,7 @@ fn balance(
         floor: 1e-16 * gram.sum_squares(),
         fine: None,
     };
-    // The quadratic of a probe tends to −(trace)/λ; trace + quadratic·λ is the degrees of freedom.
+    // For large λ the quadratic of a probe tends to −trace/λ; trace + λ·quadratic is the degrees of freedom.
     let trace = Limits {
         iterations,
         share: 3e-3,
@@ -63,7 +64,7 @@ fn balance(
         .sum::<f64>()
         / traces.len().max(1) as f64;
     let outcome = found.swap_remove(0);
-    // Exactly fitted data leave only rounding.
+    // For data that are fitted exactly only rounding would remain.
     let rss = (gram.sum_squares() + outcome.quadratic).max(1e-15 * gram.sum_squares());
     let rough: f64 = (0..)
         .zip(&outcome.solution)
@@ -74,10 +75,10 @@ fn balance(
     Ok(misfit.max(1e-9).ln() - freedom.max(1e-3).ln())
 }
 
-/// D^{1/2} z for fixed vectors of signs z: zᵀ D^{1/2} M⁻¹ D^{1/2} z estimates tr(M⁻¹D).
+/// D^{1/2} z for fixed vectors of signs z: zᵀ D^{1/2} M⁻¹ D^{1/2} z estimates tr(M⁻¹D) (Hutchinson).
 ///
-/// Few probes serve where there are many unknowns: M⁻¹ is nearly diagonal for even samples, and only
-/// what lies off the diagonal is estimated.
+/// Few probes suffice for many unknowns: for even samples M⁻¹ is nearly diagonal, and only the entries off
+/// the diagonal contribute to the error of the estimate.
 fn probes(degree: usize, power: i32) -> Vec<Vec<f64>> {
     let unknowns = index::count(degree);
     let count = (5000 / unknowns).clamp(2, 16);
@@ -102,7 +103,7 @@ fn probes(degree: usize, power: i32) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// One well mixed bit of two numbers (the finaliser of SplitMix64).
+/// A pseudorandom bit from two numbers (the finaliser of SplitMix64).
 fn sign_bit(i: u64, j: u64) -> bool {
     let mut x = (i << 8 | j)
         .wrapping_add(1)
@@ -112,7 +113,8 @@ fn sign_bit(i: u64, j: u64) -> bool {
     (x ^ (x >> 31)) & 1 == 1
 }
 
-/// Root of a growing function of log₁₀ λ by guarded secant steps; the nearer end if there is none.
+/// Root of an increasing function of log₁₀ λ by safeguarded secant steps; the nearer end of the range if
+/// there is no root.
 fn find_root<E>(
     (mut low, mut high): (f64, f64),
     start: f64,
@@ -128,7 +130,7 @@ fn find_root<E>(
         } else {
             low = x;
         }
-        // A first slope of 1 a factor e is the fixed point iteration of Fellner and Schall.
+        // A first slope of 1 per unit of ln λ gives the fixed point iteration of Fellner and Schall.
         let slope = match before {
             Some((x0, f0)) if (value - f0) / (x - x0) > 0.2 => (value - f0) / (x - x0),
             _ => std::f64::consts::LN_10,
