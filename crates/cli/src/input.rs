@@ -18,8 +18,6 @@ use crate::failure::Failure;
 use crate::files;
 use crate::output::warn;
 
-/// Share of unseen directions above which the user is warned.
-const GUESSED: f64 = 0.1;
 /// How far the length of a given direction may be from 1.
 const UNIT_TOLERANCE: f64 = 1e-6;
 
@@ -69,7 +67,7 @@ pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
 }
 
 /// Fits a cloud; numerical refusals say what to try.
-pub(crate) fn fit(cloud: &PointCloud, name: &str, options: &CloudOptions) -> Result<Fit, Failure> {
+fn fit(cloud: &PointCloud, name: &str, options: &CloudOptions) -> Result<Fit, Failure> {
     let settings = FitSettings {
         degree: options.degree,
         lambda: options.lambda,
@@ -79,7 +77,7 @@ pub(crate) fn fit(cloud: &PointCloud, name: &str, options: &CloudOptions) -> Res
         Some(sigma) => fit.smoothed(cloud, sigma),
         None => Ok(fit),
     });
-    let fit = smoothed.map_err(|e| match e {
+    smoothed.map_err(|e| match e {
         FitError::Heat { sigma } => {
             Failure::usage(format!("--heat {sigma}: expected a number of at least 0"))
         }
@@ -89,14 +87,21 @@ pub(crate) fn fit(cloud: &PointCloud, name: &str, options: &CloudOptions) -> Res
             ))
         }
         other => Failure::refused(format!("{name}: {other}")),
-    })?;
-    if fit.star.unseen > GUESSED {
-        warn(format!(
-            "{name}: no point is seen in {:.0} % of the directions from the mean; the surface there is extrapolated",
-            100.0 * fit.star.unseen
-        ));
+    })
+}
+
+/// The object of a cloud. Its warnings go to standard error; they are in [`moduli::FitReport`] too.
+pub(crate) fn fitted(
+    cloud: &PointCloud,
+    name: &str,
+    options: &CloudOptions,
+) -> Result<(Object, Fit), Failure> {
+    let fit = fit(cloud, name, options)?;
+    let object = Object::from_fit(name, fit.clone(), cloud.points().len());
+    for warning in &object.report().warnings {
+        warn(format!("{name}: {warning}"));
     }
-    Ok(fit)
+    Ok((object, fit))
 }
 
 /// The unit vectors of a table, N×3 in a `.npy` file.

@@ -50,6 +50,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Synthesize(options) => commands::synthesize::run(options, common),
         Command::Hand(HandCommand::Check(options)) => commands::hand_check::run(options, common),
         Command::Grasp(options) => commands::grasp::run(options, common),
-        Command::Info(options) => commands::info::run(options),
+        Command::Info(options) => commands::info::run(options, common),
     }
 }

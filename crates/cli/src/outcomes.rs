@@ -40,6 +40,9 @@ pub(crate) fn why_none(outcomes: &OutcomeCounts, hand: &Hand) -> String {
             "the object may be too small or too thin for the hand, or the stand-off (standoff_m of the TOML) too large"
         }
         "parts_near_each_other" => "the object may be too small for all fingers at once",
+        _ if hand.fingers().len() < 3 => {
+            "two hard point contacts can never resist a torque about the line between them, so no grasp of this hand is force-closed, whatever the friction; a hand needs three fingers, or --power, where every link that touches is a contact"
+        }
         _ => "more friction (--friction) or a smaller --least-quality may help",
     };
     let of_reason = outcomes

@@ -33,12 +33,12 @@ pub(crate) fn render(
         PageGrasp {
             label: String::new(),
             quality: record.quality,
-            lower: grasp.lower(),
+            lower: grasp.epsilon().lower,
             distances_to_cloud: cloud.map_or_else(Vec::new, |cloud| {
                 let distance = |c: &[f64; 3]| nearest(cloud, c);
                 record.contacts_m.iter().map(distance).collect()
             }),
-            weakest: weakest(measure, grasp),
+            weakest: Some(weakest(grasp)),
             pose: pose_text(record),
             source: source_label(&record.source),
             contacts: record.contacts_m.clone(),
@@ -49,6 +49,8 @@ pub(crate) fn render(
     });
     let mut subtitle_lines = facts(measure, &mesh, &file.convention);
     subtitle_lines.extend(more);
+    let warnings = object.report().warnings.iter();
+    subtitle_lines.extend(warnings.map(|w| format!("Warning: {w}.")));
     let page = GraspPage {
         title: object.name().to_owned(),
         subtitle_lines,
@@ -77,12 +79,12 @@ pub(crate) fn nearest(cloud: &PointCloud, point: &[f64; 3]) -> f64 {
 }
 
 /// The unit wrench that the grasp resists least.
-fn weakest(measure: &Measure, grasp: &Grasp) -> Option<WeakestWrench> {
-    let wrench = measure.epsilon(grasp.contacts()).ok()?.direction;
-    Some(WeakestWrench {
+fn weakest(grasp: &Grasp) -> WeakestWrench {
+    let wrench = grasp.epsilon().direction;
+    WeakestWrench {
         force: [wrench[0], wrench[1], wrench[2]],
         torque: [wrench[3], wrench[4], wrench[5]],
-    })
+    }
 }
 
 /// The hand of a grasp as JSON to copy; empty without one.

@@ -89,7 +89,7 @@ pub fn build(settings: &LibrarySettings) -> Result<LibraryRecord, ExperimentErro
 }
 
 fn entry(fitted: &FittedScan, ranked: &Grasps, settings: &LibrarySettings) -> LibraryEntry {
-    let radius = fitted.shape().coefficients().get(0, 0) / (4.0 * std::f64::consts::PI).sqrt();
+    let radius = fitted.shape().mean_radius();
     let spread = spread_out(ranked, radius, settings.separation, settings.grasps);
     LibraryEntry {
         id: fitted.id().to_owned(),

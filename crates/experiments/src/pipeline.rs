@@ -89,7 +89,7 @@ fn describe(fitted: &FittedScan) -> Value {
         "degree": fitted.shape().degree(),
         "lambda": report.lambda,
         "rms_m": report.rms,
-        "max_abs_m": report.fit.as_ref().map(|fit| fit.max_abs),
+        "max_abs_m": report.max_abs,
         "r_min_certified_m": low,
         "r_max_certified_m": high,
         "volume_m3": fitted.shape().mass_properties().volume,

@@ -54,7 +54,7 @@ pub use reach::{
 pub use sdh::{LoadError, SDH_SPEC, SDH_URDF, schunk_sdh};
 pub use synthesis::{
     HandGrasp, Outcome, OutcomeCounts, Synthesis, SynthesisError, SynthesisParams, collect,
-    evaluate_pose, synthesize,
+    evaluate_pose, synthesize, synthesize_watched,
 };
 pub use urdf::{
     MAX_LENGTH_M, MAX_LINKS, MAX_PIECES, MAX_URDF_BYTES, MAX_URDF_DEPTH, MAX_URDF_ELEMENTS,

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use grasp::{Contact, Convention, GraspModel, QualityError, Workspace, epsilon};
 use nalgebra::{Isometry3, Point3};
 use rand::Rng;
+use rayon::prelude::*;
 use shape::RadialShape;
 use sph::Direction;
 use thiserror::Error;
@@ -175,20 +176,40 @@ impl Rejection {
 
 /// Samples poses, closes the hand from each and ranks what is stable.
 ///
-/// Poses are drawn first, then evaluated one by one; callers who want threads do the
-/// same with [`PoseSampling::sample`], [`evaluate_pose`] and [`collect`] and get the same
-/// result. Errors: a convention that cannot be used.
+/// Poses are drawn in one sequence, then evaluated on the threads of rayon's pool; the result does not
+/// depend on their number.
+///
+/// # Errors
+/// The surface is too rough for the collision model, or the convention cannot be used.
 pub fn synthesize<R: Rng + ?Sized>(
     surface: &RadialShape,
     hand: &Hand,
     params: &SynthesisParams,
     rng: &mut R,
 ) -> Result<Synthesis, SynthesisError> {
+    synthesize_watched(surface, hand, params, rng, &|| {})
+}
+
+/// The same; `pose_done` is called once per pose, from any thread.
+///
+/// # Errors
+/// As [`synthesize`].
+pub fn synthesize_watched<R: Rng + ?Sized>(
+    surface: &RadialShape,
+    hand: &Hand,
+    params: &SynthesisParams,
+    rng: &mut R,
+    pose_done: &(dyn Fn() + Sync),
+) -> Result<Synthesis, SynthesisError> {
     let object = CollisionObject::new(surface)?;
     let poses = params.sampling.sample(surface, hand, params.poses, rng);
     let outcomes = poses
-        .iter()
-        .map(|pose| evaluate_pose(&object, hand, pose, params))
+        .par_iter()
+        .map(|pose| {
+            let outcome = evaluate_pose(&object, hand, pose, params);
+            pose_done();
+            outcome
+        })
         .collect::<Result<Vec<_>, _>>()?;
     Ok(collect(outcomes))
 }

@@ -16,7 +16,7 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     for name in Convention::NAMES {
         let measure = object.measure(&Convention::named(name)?)?;
         let grasp = measure.grasp_at(&points)?;
-        let (q, stable) = (grasp.quality(), measure.is_stable(grasp.lower()));
+        let (q, stable) = (grasp.quality(), measure.is_stable(grasp.epsilon().lower));
         println!("{name:9} quality {q:.5}, stable: {stable}");
     }
     let measure = object.measure(&Convention::paper())?;

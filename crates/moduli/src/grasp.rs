@@ -14,8 +14,7 @@ use crate::frame::CloudFrame;
 pub struct Grasp {
     directions: Vec<Direction>,
     contacts: Vec<Contact>,
-    quality: f64,
-    interval: Option<(f64, f64)>,
+    epsilon: Epsilon,
     source: Source,
     hand: Option<HandPlacement>,
     frame: CloudFrame,
@@ -65,58 +64,37 @@ impl Grasp {
     pub(crate) fn new(
         directions: Vec<Direction>,
         contacts: Vec<Contact>,
-        quality: f64,
+        epsilon: Epsilon,
         source: Source,
+        frame: CloudFrame,
     ) -> Self {
         Self {
             directions,
             contacts,
-            quality,
-            interval: None,
+            epsilon,
             source,
             hand: None,
-            frame: CloudFrame::new(Point3::origin()),
+            frame,
         }
-    }
-
-    pub(crate) fn with_frame(self, frame: CloudFrame) -> Self {
-        Self { frame, ..self }
-    }
-
-    pub(crate) fn with_hand(self, hand: Option<HandPlacement>) -> Self {
-        Self { hand, ..self }
-    }
-
-    pub(crate) fn set_interval(&mut self, epsilon: &Epsilon) {
-        self.interval = Some((epsilon.lower, epsilon.upper));
     }
 
     pub(crate) fn place(&mut self, hand: HandPlacement) {
         self.hand = Some(hand);
     }
 
-    /// Takes other contacts, those that a hand makes.
-    pub(crate) fn settle(&mut self, directions: Vec<Direction>, contacts: Vec<Contact>, q: f64) {
-        self.directions = directions;
-        self.contacts = contacts;
-        self.quality = q;
-        self.interval = None;
+    pub(crate) fn with_hand(self, hand: Option<HandPlacement>) -> Self {
+        Self { hand, ..self }
     }
 
     /// Epsilon quality under the convention of the measure that made the grasp; 0 when the grasp is
     /// not force-closed.
     pub fn quality(&self) -> f64 {
-        self.quality
+        self.epsilon.quality
     }
 
-    /// Proved lower bound of the quality.
-    pub fn lower(&self) -> f64 {
-        self.interval.map_or(self.quality, |(lower, _)| lower)
-    }
-
-    /// Proved upper bound of the quality, where it was computed.
-    pub fn upper(&self) -> Option<f64> {
-        self.interval.map(|(_, upper)| upper)
+    /// The quality with its proved interval, and the wrench that the grasp resists least.
+    pub fn epsilon(&self) -> &Epsilon {
+        &self.epsilon
     }
 
     /// Directions of the contacts from the centre of the object: the point of (S²)^m.
@@ -174,8 +152,8 @@ impl Grasps {
     /// The `count` best force-closed grasps, the best first; equal ones stay in the order in which
     /// they were found.
     pub fn best(&self, count: usize) -> Vec<&Grasp> {
-        let mut ranked: Vec<&Grasp> = self.list.iter().filter(|g| g.quality > 0.0).collect();
-        ranked.sort_by(|a, b| b.quality.total_cmp(&a.quality));
+        let mut ranked: Vec<&Grasp> = self.list.iter().filter(|g| g.quality() > 0.0).collect();
+        ranked.sort_by(|a, b| b.quality().total_cmp(&a.quality()));
         ranked.truncate(count);
         ranked
     }
@@ -203,8 +181,8 @@ impl Grasps {
 
 /// Force-closed grasps, the best first; equal ones stay in the order in which they were found.
 pub fn ranked(mut grasps: Vec<Grasp>) -> Vec<Grasp> {
-    grasps.retain(|g| g.quality > 0.0);
-    grasps.sort_by(|a, b| b.quality.total_cmp(&a.quality));
+    grasps.retain(|g| g.quality() > 0.0);
+    grasps.sort_by(|a, b| b.quality().total_cmp(&a.quality()));
     grasps
 }
 

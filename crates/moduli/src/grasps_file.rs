@@ -58,8 +58,8 @@ pub fn grasp_record(
         source,
         hand,
         assessment: AssessmentRecord {
-            lower: grasp.upper().map(|_| grasp.lower()),
-            upper: grasp.upper(),
+            lower: Some(grasp.epsilon().lower),
+            upper: Some(grasp.epsilon().upper),
             ..AssessmentRecord::default()
         },
     }

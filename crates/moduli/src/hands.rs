@@ -130,12 +130,14 @@ impl Finder<'_> {
         if self.measure.is_stable(found.quality) && found.quality >= naive {
             let contacts = found.reached.contacts.clone();
             let directions = found.reached.directions.clone();
-            carried.grasp.settle(directions, contacts, found.quality);
-            carried.grasp.place(HandPlacement {
+            let source = carried.grasp.source().clone();
+            let hand = HandPlacement {
                 contact_error: 0.0,
                 met: false,
                 ..self.placement(found.reached)
-            });
+            };
+            let settled = self.measure.grasp_of(directions, contacts, source)?;
+            carried.grasp = settled.with_hand(Some(hand));
         }
         Ok(())
     }

@@ -12,7 +12,7 @@ use sph::Direction;
 
 use crate::carried::{CarriedGrasp, best};
 use crate::error::Error;
-use crate::grasp::{Grasp, Grasps, Source};
+use crate::grasp::{Grasps, Source};
 use crate::hands::{HandSearch, give_hands};
 use crate::measure::Measure;
 use crate::object::Object;
@@ -226,9 +226,8 @@ fn carry_one(
         source_quality: grasp.quality,
         naive,
     };
-    let carried = Grasp::new(arrived.contacts, contacts, arrived.quality, source);
     Ok(CarriedGrasp {
-        grasp: carried.with_frame(*measure.object().frame()),
+        grasp: measure.grasp_of(arrived.contacts, contacts, source)?,
         hand: Some(hand),
     })
 }

@@ -1,6 +1,6 @@
 //! How quality is measured on one object, and when a grasp counts as stable.
 
-use grasp::{Contact, Convention, Epsilon, GraspModel, Workspace};
+use grasp::{Contact, Convention, Epsilon, GraspModel, QualityError, Workspace};
 use nalgebra::Point3;
 use space::point::contacts_on;
 use space::{MonotoneAscent, Objective, ResolvedConvention};
@@ -87,9 +87,13 @@ impl<'a> Measure<'a> {
     /// # Errors
     /// A contact is not finite, or there are too few.
     pub fn epsilon(&self, contacts: &[Contact]) -> Result<Epsilon, Error> {
+        Ok(self.epsilon_of(contacts)?)
+    }
+
+    fn epsilon_of(&self, contacts: &[Contact]) -> Result<Epsilon, QualityError> {
         let centre = self.centre();
         let model = GraspModel::new(contacts, &centre, self.convention());
-        Ok(grasp::epsilon(&model, &mut Workspace::new())?)
+        grasp::epsilon(&model, &mut Workspace::new())
     }
 
     /// The grasp with contacts in the given directions.
@@ -98,10 +102,19 @@ impl<'a> Measure<'a> {
     /// A quality cannot be computed.
     pub fn grasp(&self, directions: &[Direction], source: Source) -> Result<Grasp, Error> {
         let contacts = contacts_on(self.object.field(), directions);
-        let epsilon = self.epsilon(&contacts)?;
-        let mut grasp = Grasp::new(directions.to_vec(), contacts, epsilon.quality, source);
-        grasp.set_interval(&epsilon);
-        Ok(grasp.with_frame(*self.object.frame()))
+        Ok(self.grasp_of(directions.to_vec(), contacts, source)?)
+    }
+
+    /// The grasp with these contacts, centred frame, in these directions.
+    pub(crate) fn grasp_of(
+        &self,
+        directions: Vec<Direction>,
+        contacts: Vec<Contact>,
+        source: Source,
+    ) -> Result<Grasp, QualityError> {
+        let epsilon = self.epsilon_of(&contacts)?;
+        let frame = *self.object.frame();
+        Ok(Grasp::new(directions, contacts, epsilon, source, frame))
     }
 
     /// The grasp with contacts at the surface points nearest in direction to the given points, in the

@@ -7,8 +7,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use record::ShapeRecord;
 use record::grasps::ObjectRecord;
-use shape::io::{Format, read_cloud};
-use shape::{Fit, FitSettings, PointCloud, RadialField, RadialShape, Surface};
+use shape::io::{Format, Loaded, read_cloud};
+use shape::{Fit, FitSettings, Misfit, PointCloud, RadialField, RadialShape, Surface};
 use sph::Direction;
 use sph::direction::direction_and_radius;
 
@@ -16,10 +16,10 @@ use crate::error::Error;
 use crate::frame::CloudFrame;
 use crate::records::stored_shape;
 
+/// Share of the directions without a point above which the surface there is said to be a guess.
+const GUESSED: f64 = 0.1;
 /// Degree of the harmonics of a fit, as in the paper.
 const DEGREE: usize = 50;
-/// Points drawn from a mesh.
-const MESH_POINTS: usize = 25_000;
 
 /// An object with a surface whose validity is proved.
 ///
@@ -44,8 +44,11 @@ pub struct FitReport {
     pub rms: f64,
     /// Weight λ of the penalty.
     pub lambda: f64,
-    /// The whole fit; `None` for a surface that was read back or made.
-    pub fit: Option<Box<Fit>>,
+    /// Largest residual, metres; `None` for a surface that was read back or made.
+    pub max_abs: Option<f64>,
+    /// What the user should know about the surface, a sentence each: rows that were dropped, a unit
+    /// that looks wrong, directions that hold no point, points that the surface does not explain.
+    pub warnings: Vec<String>,
 }
 
 impl Object {
@@ -59,12 +62,15 @@ impl Object {
     pub fn from_bytes(bytes: &[u8], format: Format) -> Result<Self, Error> {
         let loaded = read_cloud(bytes, &format.to_string())?;
         let mut generator = ChaCha8Rng::seed_from_u64(0);
-        let cloud = loaded.cloud(MESH_POINTS, &mut generator)?;
+        let cloud = loaded.cloud(Loaded::MESH_SAMPLES, &mut generator)?;
         let settings = FitSettings {
             degree: DEGREE,
             lambda: None,
         };
-        Self::from_cloud("object", &cloud, &settings)
+        let mut object = Self::from_cloud("object", &cloud, &settings)?;
+        let of_file = loaded.warnings.iter().map(ToString::to_string);
+        object.report.warnings.splice(0..0, of_file);
+        Ok(object)
     }
 
     /// Fits a cloud, metres.
@@ -84,15 +90,16 @@ impl Object {
     pub fn from_fit(name: &str, fit: Fit, points: usize) -> Self {
         Self {
             name: name.to_owned(),
-            shape: fit.shape.clone(),
             field: OnceLock::new(),
             frame: CloudFrame::new(fit.centre_in_cloud),
             report: FitReport {
                 points,
                 rms: fit.rms,
                 lambda: fit.lambda,
-                fit: Some(Box::new(fit)),
+                max_abs: Some(fit.max_abs),
+                warnings: warnings(&fit),
             },
+            shape: fit.shape,
         }
     }
 
@@ -112,16 +119,20 @@ impl Object {
     /// # Errors
     /// A number is not finite, or the radius is not proved positive.
     pub fn from_record(record: &ShapeRecord) -> Result<Self, Error> {
+        let shape = stored_shape(record)?;
+        // The largest residual is not stored: the root mean square stands for both.
+        let misfit = Misfit::found(record.rms_m, record.rms_m, shape.mean_radius());
         Ok(Self {
             name: record.name.clone(),
-            shape: stored_shape(record)?,
+            shape,
             field: OnceLock::new(),
             frame: CloudFrame::new(record.centre_in_cloud()),
             report: FitReport {
                 points: usize::try_from(record.points).unwrap_or(usize::MAX),
                 rms: record.rms_m,
                 lambda: record.lambda,
-                fit: None,
+                max_abs: None,
+                warnings: misfit.iter().map(Misfit::to_string).collect(),
             },
         })
     }
@@ -212,7 +223,20 @@ impl Object {
             r_max_certified_m: high,
             centre_of_mass_m: self.frame.to_cloud(&self.shape.centre_of_mass()).into(),
             volume_m3: self.shape.mass_properties().volume,
+            warnings: self.report.warnings.clone(),
             ..ObjectRecord::default()
         }
     }
+}
+
+/// What the user should know about a fit.
+fn warnings(fit: &Fit) -> Vec<String> {
+    let unseen = (fit.star.unseen > GUESSED).then(|| {
+        format!(
+            "no point is seen in {:.0} % of the directions from the mean; the surface there is extrapolated",
+            100.0 * fit.star.unseen
+        )
+    });
+    let misfit = fit.misfit().map(|misfit| misfit.to_string());
+    unseen.into_iter().chain(misfit).collect()
 }

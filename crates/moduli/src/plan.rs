@@ -109,13 +109,8 @@ impl Plan {
         let mut found = measure.synthesize_watched(hand, &self.poses, &step)?;
         found.list.truncate(self.keep);
         grasps.extend(found.list);
-        let mut grasps = ranked(grasps);
-        for grasp in grasps.iter_mut().filter(|g| g.upper().is_none()) {
-            let epsilon = measure.epsilon(grasp.contacts())?;
-            grasp.set_interval(&epsilon);
-        }
         Ok(Planned {
-            grasps,
+            grasps: ranked(grasps),
             transferred,
             outcomes: found.outcomes.unwrap_or_default(),
         })

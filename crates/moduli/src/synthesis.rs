@@ -1,12 +1,10 @@
 //! Grasps of a hand on an object, found by closing it from sampled poses (Sec. IV-C).
 
 use hand::{
-    ClosingRules, CollisionObject, Hand, HandGrasp, PoseSampling, Synthesis, SynthesisError,
-    SynthesisParams, collect, evaluate_pose,
+    ClosingRules, Hand, HandGrasp, PoseSampling, Synthesis, SynthesisError, SynthesisParams,
 };
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use rayon::prelude::*;
 
 use crate::error::Error;
 use crate::grasp::{Grasp, Grasps, HandPlacement, Source};
@@ -103,20 +101,9 @@ impl Measure<'_> {
             centre: self.centre(),
             least_quality: poses.least_quality.unwrap_or(self.stable_above()),
         };
-        let object = CollisionObject::new(surface)?;
         let mut generator = ChaCha8Rng::seed_from_u64(poses.seed);
         generator.set_stream(poses.stream);
-        let drawn = params
-            .sampling
-            .sample(surface, hand, poses.count, &mut generator);
-        let outcomes = drawn
-            .par_iter()
-            .map(|pose| {
-                pose_done();
-                evaluate_pose(&object, hand, pose, &params)
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        Ok(collect(outcomes))
+        hand::synthesize_watched(surface, hand, &params, &mut generator, pose_done)
     }
 
     fn of_hand_grasp(&self, hand: &Hand, found: &HandGrasp) -> Result<Grasp, Error> {
@@ -124,17 +111,13 @@ impl Measure<'_> {
             preshape: found.preshape,
         };
         let (directions, contacts) = (found.directions.clone(), found.contacts.clone());
-        let epsilon = self.epsilon(&contacts)?;
-        let mut grasp = Grasp::new(directions, contacts, found.quality, source);
-        grasp.set_interval(&epsilon);
-        Ok(grasp
-            .with_frame(*self.object().frame())
-            .with_hand(Some(HandPlacement {
-                centred_from_palm: found.object_from_palm,
-                joints: found.joints.clone(),
-                pregrasp_joints: hand.preshapes()[found.preshape].joints.clone(),
-                contact_error: 0.0,
-                met: true,
-            })))
+        let grasp = self.grasp_of(directions, contacts, source)?;
+        Ok(grasp.with_hand(Some(HandPlacement {
+            centred_from_palm: found.object_from_palm,
+            joints: found.joints.clone(),
+            pregrasp_joints: hand.preshapes()[found.preshape].joints.clone(),
+            contact_error: 0.0,
+            met: true,
+        })))
     }
 }

@@ -44,24 +44,17 @@ fn semi_matte() -> Lighting {
         .vertex_normals_epsilon(1e-24)
 }
 
-/// Unconnected points.
+/// Unconnected points of one colour.
 pub(crate) fn points(
     points: &[[f64; 3]],
     colour: &'static str,
     size_px: usize,
 ) -> Box<ScatterTrace> {
-    let [x, y, z] = columns(points);
-    Scatter3D::new(x, y, z)
-        .mode(Mode::Markers)
-        .marker(
-            Marker::new()
-                .color(colour)
-                .size(size_px)
-                .symbol(MarkerSymbol::Circle)
-                .line(Line::new().width(0.0)),
-        )
-        .hover_info(HoverInfo::Skip)
-        .show_legend(false)
+    let outline = Line::new().width(0.0);
+    markers(
+        points,
+        Marker::new().color(colour).size(size_px).line(outline),
+    )
 }
 
 /// Unconnected points, each of its own colour, with a thin outline.
@@ -70,16 +63,16 @@ pub(crate) fn points_of(
     colours: Vec<&'static str>,
     size_px: usize,
 ) -> Box<ScatterTrace> {
+    let outline = Line::new().width(1.0).color("#ffffff");
+    let marker = Marker::new().color_array(colours).size(size_px);
+    markers(points, marker.line(outline))
+}
+
+fn markers(points: &[[f64; 3]], marker: Marker) -> Box<ScatterTrace> {
     let [x, y, z] = columns(points);
     Scatter3D::new(x, y, z)
         .mode(Mode::Markers)
-        .marker(
-            Marker::new()
-                .color_array(colours)
-                .size(size_px)
-                .symbol(MarkerSymbol::Circle)
-                .line(Line::new().width(1.0).color("#ffffff")),
-        )
+        .marker(marker.symbol(MarkerSymbol::Circle))
         .hover_info(HoverInfo::Skip)
         .show_legend(false)
 }

@@ -4,6 +4,7 @@ use nalgebra::Point3;
 use sph::regression::{Gram, Penalty, RegressionError, Samples};
 use sph::rotation::heat_flow;
 
+use crate::misfit::Misfit;
 use crate::outliers::{lonely_points, stray_points};
 use crate::point_cloud::{CloudError, PointCloud};
 use crate::radial::{RadialError, RadialShape};
@@ -136,6 +137,9 @@ pub enum FitError {
         /// The time σ that was given.
         sigma: f64,
     },
+    /// The residuals are so large that the surface is no description of the cloud.
+    #[error("{0}")]
+    Misfit(Misfit),
     /// Residuals were asked for against another cloud.
     #[error("the cloud is not the one that was fitted")]
     OtherCloud,
@@ -166,6 +170,11 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// What is doubtful about the surface as a description of its cloud, see [`Misfit::found`].
+    pub fn misfit(&self) -> Option<Misfit> {
+        Misfit::found(self.rms, self.max_abs, self.shape.mean_radius())
+    }
+
     /// The surface after heat has flowed on the sphere for a time σ, β_{lm} e^{−l(l+1)σ}: the weighted
     /// harmonics of the paper's reference 13, which damp the ringing at edges.
     ///
@@ -227,7 +236,11 @@ pub fn fit(cloud: &PointCloud, settings: &FitSettings) -> Result<Fit, FitError> 
         let stray = stray_points(&view.points, &residuals);
         if round >= ROUNDS || !noticeable(&stray, &residuals) {
             outliers.sort_unstable();
-            return Ok(solved.report(&view, &residuals, star, outliers));
+            let fit = solved.report(&view, &residuals, star, outliers);
+            return match fit.misfit().filter(Misfit::is_refused) {
+                Some(misfit) => Err(FitError::Misfit(misfit)),
+                None => Ok(fit),
+            };
         }
         outliers.extend(stray.iter().map(|i| view.index[*i]));
     }

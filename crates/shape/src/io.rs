@@ -1,5 +1,6 @@
 //! Reading clouds and meshes, and writing meshes. Bytes in, values out; no file is opened here.
 
+mod content;
 mod error;
 mod geometry;
 mod load;
@@ -11,10 +12,12 @@ pub mod ply;
 mod ply_error;
 mod stl;
 mod text;
+mod write;
 mod xyz;
 
 pub use error::{Format, LoadError};
 pub use geometry::{Geometry, Loaded, Warning};
 pub use load::read_cloud;
-pub use ply::{PlyPoints, read_ply, write_ply};
+pub use ply::{PlyPoints, read_ply};
 pub use ply_error::PlyError;
+pub use write::{MeshFormat, write_mesh, write_ply};

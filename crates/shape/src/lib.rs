@@ -31,6 +31,7 @@ pub mod fit;
 mod immersion;
 pub mod io;
 pub mod mass;
+mod misfit;
 pub mod noise;
 mod normals;
 mod outliers;
@@ -49,6 +50,7 @@ pub mod vessel;
 
 pub use fit::{Fit, FitError, FitSettings};
 pub use immersion::{Immersion, SphericalError};
+pub use misfit::Misfit;
 pub use point_cloud::{CloudError, PointCloud};
 pub use radial::{RadialError, RadialShape};
 pub use radial_field::RadialField;

@@ -27,6 +27,26 @@ pub enum CloudError {
         /// z as found.
         z: f64,
     },
+    /// A coordinate beyond [`PointCloud::FARTHEST`].
+    #[error(
+        "point {index} has the coordinate {value:e} m; expected at most {limit:e} m from the origin: is the unit right?",
+        limit = PointCloud::FARTHEST
+    )]
+    TooFar {
+        /// Which point.
+        index: usize,
+        /// The coordinate.
+        value: f64,
+    },
+    /// An extent below [`PointCloud::LEAST_EXTENT`].
+    #[error(
+        "the cloud has an extent of {extent:e} m; expected at least {least:e} m: is the unit right?",
+        least = PointCloud::LEAST_EXTENT
+    )]
+    TooSmall {
+        /// Largest side of the bounding box.
+        extent: f64,
+    },
     /// All points stand in one place.
     #[error("the cloud has no extent: all points are at the same place")]
     NoExtent,
@@ -51,7 +71,17 @@ impl PointCloud {
     /// The least number of points that bound a solid.
     pub const MIN_POINTS: usize = 4;
 
-    /// Checks that there are enough points, that all are finite and that they have an extent.
+    /// Largest coordinate, metres: map coordinates (northings) reach it, no other frame does.
+    pub const FARTHEST: f64 = 1e7;
+
+    /// Least extent, metres.
+    pub const LEAST_EXTENT: f64 = 1e-9;
+
+    /// Checks that there are enough points, that all are finite and within
+    /// [`PointCloud::FARTHEST`], and that they have an extent.
+    ///
+    /// # Errors
+    /// The first of these that fails, with the point.
     pub fn new(points: Vec<Point3<f64>>) -> Result<Self, CloudError> {
         if points.len() < Self::MIN_POINTS {
             return Err(CloudError::TooFew {
@@ -69,9 +99,18 @@ impl PointCloud {
                 z: p.z,
             });
         }
+        let far = |p: &Point3<f64>| p.iter().any(|x| x.abs() > Self::FARTHEST);
+        if let Some(index) = points.iter().position(far) {
+            let value = points[index].coords.iter().copied();
+            let value = value.fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+            return Err(CloudError::TooFar { index, value });
+        }
         let cloud = Self { points };
-        if cloud.extent().max() > 0.0 {
+        let extent = cloud.extent().max();
+        if extent >= Self::LEAST_EXTENT {
             Ok(cloud)
+        } else if extent > 0.0 {
+            Err(CloudError::TooSmall { extent })
         } else {
             Err(CloudError::NoExtent)
         }
@@ -121,6 +160,24 @@ impl PointCloud {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn coordinates_of_no_frame_are_refused() {
+        let cloud = |scale: f64| {
+            let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+            PointCloud::new(corners.map(|c| Point3::from(c) * scale).to_vec())
+        };
+        assert!(cloud(5e6).is_ok());
+        for scale in [1e155, -1e155, 1.1e7] {
+            let error = cloud(scale).unwrap_err();
+            assert!(matches!(error, CloudError::TooFar { index: 1, value } if value == scale));
+            assert!(error.to_string().len() < 150, "{error}");
+        }
+        assert_eq!(
+            cloud(1e-162).unwrap_err(),
+            CloudError::TooSmall { extent: 1e-162 }
+        );
+    }
 
     #[test]
     fn refuses_nan_and_clouds_without_extent() {

@@ -91,6 +91,11 @@ impl RadialShape {
         self.coefficients.degree()
     }
 
+    /// Mean of the radius over all directions, metres.
+    pub fn mean_radius(&self) -> f64 {
+        self.coefficients.get(0, 0) / (4.0 * std::f64::consts::PI).sqrt()
+    }
+
     /// Certified bounds (r_min, r_max): r_min ≤ r(p) ≤ r_max for every p, r_min > 0. Metres.
     pub fn radius_bounds(&self) -> (f64, f64) {
         (self.range.lower, self.range.upper)

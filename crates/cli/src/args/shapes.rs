@@ -51,7 +51,8 @@ pub(crate) struct EvalOptions {
 pub(crate) struct MeshOptions {
     /// A shape file, as `moduli fit` writes it.
     pub(crate) shape: PathBuf,
-    /// File for the mesh, PLY in the frame of the cloud.
+    /// File for the mesh, in the frame of the cloud. Its ending decides the format: `.ply`, `.obj`, `.stl` or `.off`;
+    /// PLY without an ending.
     #[arg(short, long)]
     pub(crate) output: PathBuf,
     /// Number of circles of latitude.

@@ -6,7 +6,6 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use moduli::Object;
 use serde::Serialize;
 
 use crate::args::{Common, FitOptions, Model};
@@ -30,6 +29,7 @@ struct FitLine {
     unseen_share: f64,
     multivalued_share: f64,
     centre_m: [f64; 3],
+    warnings: Vec<String>,
     seconds: f64,
 }
 
@@ -80,12 +80,13 @@ pub(crate) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> 
 fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Failure> {
     let cloud = input::cloud(path, &options.cloud, seed)?;
     let start = Instant::now();
-    let fit = input::fit(&cloud, &path.display().to_string(), &options.cloud)?;
+    let (object, fit) = input::fitted(&cloud, &path.display().to_string(), &options.cloud)?;
     let seconds = start.elapsed().as_secs_f64();
     let points = cloud.points().len();
+    let warnings = object.report().warnings.clone();
     if let Some(target) = target(path, options) {
-        let object = Object::from_fit(&input::stem(path), fit.clone(), points);
         let bytes = object
+            .named(&input::stem(path))
             .to_record()
             .to_bytes()
             .map_err(|e| Failure::other(e.to_string()))?;
@@ -109,6 +110,7 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Fail
         unseen_share: fit.star.unseen,
         multivalued_share: fit.star.multiple,
         centre_m: fit.centre_in_cloud.into(),
+        warnings,
         seconds,
     })
 }

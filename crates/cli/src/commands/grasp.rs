@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use hand::Hand;
 use indicatif::ProgressBar;
-use moduli::{HandSearch, Library, Object, Plan, Poses, Progress, Stage, TransferOptions};
+use moduli::{HandSearch, Library, Plan, Poses, Progress, Stage, TransferOptions};
 use record::GraspsFile;
 use serde::Serialize;
 use shape::PointCloud;
@@ -45,6 +45,7 @@ struct GraspLine {
     grasps_json: String,
     grasps_yaml: String,
     index_html: String,
+    warnings: Vec<String>,
     seconds: f64,
 }
 
@@ -54,8 +55,7 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
     let hand = hands::load(&options.hand)?;
     let (name, cloud) = object(options, common)?;
     let points = cloud.points().len();
-    let fit = input::fit(&cloud, &name, &options.fit)?;
-    let object = Object::from_fit(&name, fit, points);
+    let (object, _) = input::fitted(&cloud, &name, &options.fit)?;
     let refused = |e: moduli::Error| Failure::refused(format!("{name}: {e}"));
     let measure = object.measure(&convention).map_err(refused)?;
     let bars = Bars::new(common.quiet);
@@ -96,6 +96,7 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
         grasps_json: written.grasps_json.display().to_string(),
         grasps_yaml: written.grasps_yaml.display().to_string(),
         index_html: written.index_html.display().to_string(),
+        warnings: object.report().warnings.clone(),
         seconds: start.elapsed().as_secs_f64(),
     };
     if common.json {

@@ -1,153 +1,240 @@
 //! `moduli info`: describes a file.
 
-use moduli::SphericalObject;
-use moduli::records::{StoredShapeError, stored_shape};
-use record::{
-    GraspsFile, GraspsFileError, Kind, LibraryRecord, ShapeRecord, SphericalRecord, envelope,
-};
+use std::path::Path;
 
+use moduli::SphericalObject;
+use moduli::records::stored_shape;
+use record::{GraspsFile, GraspsFileError, Kind, LibraryRecord, ShapeRecord, SphericalRecord};
+use serde_json::{Map, Value, json};
 use shape::io::{Geometry, Loaded};
 
-use crate::args::InfoOptions;
+use crate::args::{Common, InfoOptions};
 use crate::failure::Failure;
 use crate::{input, output};
 
-pub(crate) fn run(options: &InfoOptions) -> Result<(), Failure> {
-    let path = &options.file;
-    let bytes = input::read(path)?;
-    let lines = match envelope::kind_of(&bytes) {
-        Some(Kind::Shape) => {
-            let record = ShapeRecord::from_bytes(&bytes).map_err(|e| Failure::input(path, e))?;
-            shape_lines(&record).map_err(|e| Failure::input(path, e))?
-        }
-        Some(Kind::Spherical) => {
-            let record =
-                SphericalRecord::from_bytes(&bytes).map_err(|e| Failure::input(path, e))?;
-            let object =
-                SphericalObject::from_record(&record).map_err(|e| Failure::input(path, e))?;
-            spherical_lines(&object)
-        }
-        Some(Kind::Library) => {
-            let record = LibraryRecord::from_bytes(&bytes).map_err(|e| Failure::input(path, e))?;
-            library_lines(&record)
-        }
-        None => match GraspsFile::from_json(&bytes) {
-            Ok(file) => grasps_lines(&file),
-            Err(e @ (GraspsFileError::Version { .. } | GraspsFileError::Lengths { .. })) => {
-                return Err(Failure::input(path, e));
-            }
-            Err(GraspsFileError::Json(_)) => {
-                let loaded = input::load(path)?;
-                loaded_lines(&loaded)
-            }
-        },
-    };
-    lines.iter().for_each(output::say);
-    Ok(())
+/// One line for people, and the same for programs.
+struct Fact {
+    line: String,
+    /// An object; its keys join those of the other facts.
+    values: Value,
 }
 
-fn shape_lines(record: &ShapeRecord) -> Result<Vec<String>, StoredShapeError> {
+fn fact(line: String, values: Value) -> Fact {
+    Fact { line, values }
+}
+
+pub(crate) fn run(options: &InfoOptions, common: &Common) -> Result<(), Failure> {
+    let facts = facts(&options.file)?;
+    if !common.json {
+        facts.iter().for_each(|fact| output::say(&fact.line));
+        return Ok(());
+    }
+    let keys = facts.into_iter().filter_map(|fact| match fact.values {
+        Value::Object(keys) => Some(keys),
+        _ => None,
+    });
+    output::say_json(&keys.flatten().collect::<Map<String, Value>>())
+}
+
+fn facts(path: &Path) -> Result<Vec<Fact>, Failure> {
+    let bytes = input::read(path)?;
+    let refused = |e: &dyn std::fmt::Display| Failure::input(path, e);
+    match record::envelope::kind_of(&bytes) {
+        Some(Kind::Shape) => {
+            let record = ShapeRecord::from_bytes(&bytes).map_err(|e| refused(&e))?;
+            shape_facts(&record).map_err(|e| refused(&e))
+        }
+        Some(Kind::Spherical) => {
+            let record = SphericalRecord::from_bytes(&bytes).map_err(|e| refused(&e))?;
+            let object = SphericalObject::from_record(&record).map_err(|e| refused(&e))?;
+            Ok(spherical_facts(&object))
+        }
+        Some(Kind::Library) => {
+            let record = LibraryRecord::from_bytes(&bytes).map_err(|e| refused(&e))?;
+            Ok(library_facts(&record))
+        }
+        None => match GraspsFile::from_json(&bytes) {
+            Ok(file) => Ok(grasps_facts(&file)),
+            // A cloud, a mesh, or something unknown, which the reader of clouds names.
+            Err(GraspsFileError::Json(_)) if path.extension().is_none_or(|x| x != "json") => {
+                Ok(loaded_facts(&input::load(path)?))
+            }
+            Err(e) => Err(refused(&e)),
+        },
+    }
+}
+
+fn shape_facts(record: &ShapeRecord) -> Result<Vec<Fact>, moduli::records::StoredShapeError> {
     let shape = stored_shape(record)?;
     let (low, high) = shape.tight_radius_bounds(1e-3);
     // Rounded outward: what is printed is proved as well.
-    let (low, high) = ((1e6 * low).floor() / 1e3, (1e6 * high).ceil() / 1e3);
-    let mass = shape.mass_properties();
+    let (low_mm, high_mm) = ((1e6 * low).floor() / 1e3, (1e6 * high).ceil() / 1e3);
+    let volume = shape.mass_properties().volume;
+    let (rms, lambda) = (record.rms_m, record.lambda);
+    let centre = record.centre_in_cloud_m;
     Ok(vec![
-        format!("shape       {}", record.name.escape_debug()),
-        format!("degree      {}", shape.degree()),
-        format!("certified   {low:.3} mm ≤ r ≤ {high:.3} mm"),
-        format!(
-            "fit         {} points, rms {:.3} mm, λ {:.3e}",
-            record.points,
-            1e3 * record.rms_m,
-            record.lambda
+        fact(
+            format!("shape       {}", record.name.escape_debug()),
+            json!({ "kind": "shape", "model": "radial", "name": record.name }),
         ),
-        format!("volume      {:.2} cm³", 1e6 * mass.volume),
-        format!(
-            "centre      {:?} m in the frame of the cloud",
-            record.centre_in_cloud_m
+        fact(
+            format!("degree      {}", shape.degree()),
+            json!({ "degree": shape.degree() }),
+        ),
+        fact(
+            format!("certified   {low_mm:.3} mm ≤ r ≤ {high_mm:.3} mm"),
+            json!({ "r_min_certified_m": low, "r_max_certified_m": high }),
+        ),
+        fact(
+            format!(
+                "fit         {} points, rms {:.3} mm, λ {lambda:.3e}",
+                record.points,
+                1e3 * rms
+            ),
+            json!({ "points": record.points, "rms_m": rms, "lambda": lambda }),
+        ),
+        fact(
+            format!("volume      {:.2} cm³", 1e6 * volume),
+            json!({ "volume_m3": volume }),
+        ),
+        fact(
+            format!("centre      {centre:?} m in the frame of the cloud"),
+            json!({ "centre_m": centre }),
         ),
     ])
 }
 
-fn spherical_lines(object: &SphericalObject) -> Vec<String> {
+fn spherical_facts(object: &SphericalObject) -> Vec<Fact> {
     let shape = object.shape();
     let immersion = shape.immersion();
+    let [x, y, z] = object.lambda();
+    let rms = object.rms();
+    let volume = shape.mass_properties().volume;
+    let centre: [f64; 3] = object.frame().centre_in_cloud().into();
     vec![
-        format!("shape       {}, a map of the sphere", object.name()),
-        format!("degree      {}", shape.degree()),
-        format!(
-            "immersion   proved: area element at least {:.3e} m²; seen {:.3e} to {:.3e} m²",
-            immersion.lower, immersion.seen_lower, immersion.seen_upper
+        fact(
+            format!(
+                "shape       {}, a map of the sphere",
+                object.name().escape_debug()
+            ),
+            json!({ "kind": "shape", "model": "spherical", "name": object.name() }),
         ),
-        format!(
-            "fit         {} points, rms {:.3} mm, λ {:.3e}, {:.3e}, {:.3e}",
-            object.points(),
-            1e3 * object.rms(),
-            object.lambda()[0],
-            object.lambda()[1],
-            object.lambda()[2]
+        fact(
+            format!("degree      {}", shape.degree()),
+            json!({ "degree": shape.degree() }),
         ),
-        format!(
-            "volume      {:.2} cm³",
-            1e6 * shape.mass_properties().volume
+        fact(
+            format!(
+                "immersion   proved: area element at least {:.3e} m²; seen {:.3e} to {:.3e} m²",
+                immersion.lower, immersion.seen_lower, immersion.seen_upper
+            ),
+            json!({ "embedding": "immersion", "area_element_min_certified_m2": immersion.lower }),
         ),
-        format!(
-            "centre      {:?} m in the frame of the cloud",
-            <[f64; 3]>::from(object.frame().centre_in_cloud())
+        fact(
+            format!(
+                "fit         {} points, rms {:.3} mm, λ {x:.3e}, {y:.3e}, {z:.3e}",
+                object.points(),
+                1e3 * rms
+            ),
+            json!({ "points": object.points(), "rms_m": rms, "lambda": [x, y, z] }),
+        ),
+        fact(
+            format!("volume      {:.2} cm³", 1e6 * volume),
+            json!({ "volume_m3": volume }),
+        ),
+        fact(
+            format!("centre      {centre:?} m in the frame of the cloud"),
+            json!({ "centre_m": centre }),
         ),
     ]
 }
 
-fn library_lines(record: &LibraryRecord) -> Vec<String> {
-    let head = format!(
-        "library     {} objects, hand {}, convention {}, seed {}",
-        record.entries.len(),
-        record.hand,
-        record.convention,
-        record.seed
-    );
-    let entries = record.entries.iter().map(|e| {
-        let best = e.grasps.first().map_or(0.0, |g| g.quality);
+fn library_facts(record: &LibraryRecord) -> Vec<Fact> {
+    let entries: Vec<Value> = record
+        .entries
+        .iter()
+        .map(|e| json!({ "id": e.id, "name": e.name, "grasps": e.grasps.len() }))
+        .collect();
+    let head = fact(
         format!(
-            "{:4} {:24} {:3} grasps, best {:.3}",
-            e.id,
-            e.name,
+            "library     {} objects, hand {}, convention {}, seed {}",
+            record.entries.len(),
+            record.hand.escape_debug(),
+            record.convention.escape_debug(),
+            record.seed
+        ),
+        json!({
+            "kind": "library", "hand": record.hand, "convention": record.convention,
+            "seed": record.seed, "objects": entries,
+        }),
+    );
+    let lines = record.entries.iter().map(|e| {
+        let best = e.grasps.first().map_or(0.0, |g| g.quality);
+        let line = format!(
+            "{:4} {:24} {:3} grasps, best {best:.3}",
+            e.id.escape_debug().to_string(),
+            e.name.escape_debug().to_string(),
             e.grasps.len(),
-            best
-        )
+        );
+        fact(line, Value::Null)
     });
-    std::iter::once(head).chain(entries).collect()
+    std::iter::once(head).chain(lines).collect()
 }
 
-fn grasps_lines(file: &GraspsFile) -> Vec<String> {
+fn grasps_facts(file: &GraspsFile) -> Vec<Fact> {
+    let (count, name) = (file.grasps.len(), &file.object.name);
     let best = file.grasps.first().map_or(0.0, |g| g.quality);
     vec![
-        format!("grasps      {} on {}", file.grasps.len(), file.object.name),
-        format!("convention  {}", file.convention.name),
-        format!("best        {best:.4}"),
+        fact(
+            format!("grasps      {count} on {}", name.escape_debug()),
+            json!({ "kind": "grasps", "version": file.version, "grasps": count, "object": name }),
+        ),
+        fact(
+            format!("convention  {}", file.convention.name.escape_debug()),
+            json!({ "convention": file.convention.name }),
+        ),
+        fact(format!("best        {best:.4}"), json!({ "best": best })),
     ]
 }
 
-fn loaded_lines(loaded: &Loaded) -> Vec<String> {
-    let kind = match &loaded.geometry {
-        Geometry::Points(points) => format!("cloud       {} points", points.len()),
-        Geometry::Mesh(mesh) => format!(
-            "mesh        {} vertices, {} triangles",
-            mesh.vertices.len(),
-            mesh.triangles.len()
+fn loaded_facts(loaded: &Loaded) -> Vec<Fact> {
+    let (kind, counts) = match &loaded.geometry {
+        Geometry::Points(points) => (
+            format!("cloud       {} points", points.len()),
+            json!({ "kind": "cloud", "points": points.len() }),
+        ),
+        Geometry::Mesh(mesh) => (
+            format!(
+                "mesh        {} vertices, {} triangles",
+                mesh.vertices.len(),
+                mesh.triangles.len()
+            ),
+            json!({
+                "kind": "mesh", "vertices": mesh.vertices.len(), "triangles": mesh.triangles.len(),
+            }),
         ),
     };
     let (mut low, mut high) = (loaded.vertices()[0], loaded.vertices()[0]);
     for p in loaded.vertices() {
         (low, high) = (low.inf(p), high.sup(p));
     }
-    let size = 1e3 * (high - low);
+    let size = high - low;
+    let format = loaded.format.to_string();
     vec![
-        format!("{kind}, {} rows dropped, {}", loaded.dropped, loaded.format),
-        format!(
-            "extent      {:.1} × {:.1} × {:.1} mm, if the unit is metres",
-            size.x, size.y, size.z
+        fact(
+            format!("{kind}, {} rows dropped, {format}", loaded.dropped),
+            counts,
+        ),
+        fact(
+            format!(
+                "extent      {:.1} × {:.1} × {:.1} mm, if the unit is metres",
+                1e3 * size.x,
+                1e3 * size.y,
+                1e3 * size.z
+            ),
+            json!({
+                "dropped": loaded.dropped, "format": format, "extent": [size.x, size.y, size.z],
+            }),
         ),
     ]
 }

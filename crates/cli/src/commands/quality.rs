@@ -10,7 +10,7 @@ use grasp::{
     CentreRule, ContactModel, Convention, Epsilon, Grasp, GraspModel, TangentRule, Workspace,
 };
 use moduli::Metrics;
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -84,7 +84,8 @@ pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failu
         let proofs: Vec<_> = rows.iter().map(|row| &row.certificate).collect();
         output::write_file(path, &output::encode(&proofs)?)?;
     }
-    let line = summary(&rows, options.metric, &convention, seconds);
+    let mut line = summary(&rows, options.metric, &convention, seconds);
+    line.warnings.extend(unit_warning(&grasps));
     line.warnings.iter().for_each(output::warn);
     if common.json {
         return output::say_json(&QualityLine {
@@ -173,6 +174,24 @@ impl Row {
             certificate: None,
         }
     }
+}
+
+/// Contacts farther apart than any hand spans, which are rather in millimetres.
+fn unit_warning(grasps: &[Grasp]) -> Option<String> {
+    const WIDEST: f64 = 2.0;
+    let apart = |g: &Grasp| {
+        let first = g.contacts.first().map_or(Point3::origin(), |c| c.position);
+        let distances = g.contacts.iter().map(|c| (c.position - first).norm());
+        distances.fold(0.0, f64::max)
+    };
+    let (first, distance) = grasps
+        .iter()
+        .map(apart)
+        .enumerate()
+        .find(|(_, distance)| *distance > WIDEST)?;
+    Some(format!(
+        "the contacts of grasp {first} are {distance:.1} m apart; positions are expected in metres: are these millimetres?"
+    ))
 }
 
 fn warnings(rows: &[Row]) -> Vec<String> {

@@ -361,3 +361,55 @@ fn bad_usage_is_exit_2() {
         refused(&moduli(here, &["quality", "g.npy", flag, value]), 2, &[]);
     }
 }
+
+#[test]
+fn a_surface_that_does_not_explain_its_points_is_said_and_a_worse_one_refused() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    // A ball of 4 cm, and a crumb beside it.
+    let ball = sph::direction::even_directions(4000);
+    let ball = ball.iter().map(|p| p.into_inner() * 0.04);
+    let crumb = sph::direction::even_directions(80);
+    let crumb = crumb
+        .iter()
+        .map(|p| p.into_inner() * 0.01 + nalgebra::Vector3::new(0.25, 0.0, 0.0));
+    let text: String = ball
+        .chain(crumb)
+        .map(|p| format!("{} {} {}\n", p.x, p.y, p.z))
+        .collect();
+    std::fs::write(here.join("scene.xyz"), text).unwrap();
+    let fit = moduli(here, &["fit", "scene.xyz", "--degree", "20", "--json"]);
+    assert!(String::from_utf8_lossy(&fit.stderr).contains("does not explain"));
+    let line: serde_json::Value = serde_json::from_str(&stdout(&fit)).unwrap();
+    let warning = line["warnings"][0].as_str().unwrap();
+    assert!(warning.contains("does not explain"), "{warning}");
+    // A needle of 100 : 1, whose fitted surface would be a ball.
+    let needle = sph::direction::even_directions(3000);
+    let text: String = needle
+        .iter()
+        .map(|p| format!("{} {} {}\n", 0.2 * p.x, 0.002 * p.y, 0.002 * p.z))
+        .collect();
+    std::fs::write(here.join("needle.xyz"), text).unwrap();
+    let fit = moduli(here, &["fit", "needle.xyz", "--degree", "20"]);
+    refused(&fit, 4, &["needle.xyz", "does not explain"]);
+}
+
+#[test]
+fn coordinates_of_no_frame_and_contacts_in_millimetres_are_named() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let text = "1e155 0 0\n0 1e155 0\n0 0 1e155\n-1e155 0 0\n0 -1e155 0\n";
+    std::fs::write(here.join("huge.xyz"), text).unwrap();
+    refused(
+        &moduli(here, &["fit", "huge.xyz"]),
+        3,
+        &["huge.xyz", "1e155"],
+    );
+    let row = "40,0,0,-20,34,0,-20,-34,0,-1,0,0,0.5,-0.8660254037844386,0,0.5,0.8660254037844386,0,0,0,0\n";
+    std::fs::write(here.join("mm.csv"), row).unwrap();
+    let quality = moduli(here, &["quality", "mm.csv", "--json"]);
+    let line: serde_json::Value = serde_json::from_str(&stdout(&quality)).unwrap();
+    let warnings = line["warnings"].as_array().unwrap();
+    let named = |w: &serde_json::Value| w.as_str().unwrap().contains("millimetres");
+    assert!(warnings.iter().any(named), "{warnings:?}");
+}

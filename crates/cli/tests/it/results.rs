@@ -22,9 +22,11 @@ fn a_cloud_is_not_overwritten_by_its_shape() {
     refused(&fit, 2, &["egg.xyz", "input"]);
     assert_eq!(fs::read(here.join("egg.xyz")).unwrap(), before);
     let shape = fs::read(here.join("egg.shape")).unwrap();
-    let mesh = moduli(here, &["mesh", "egg.shape", "-o", "./egg.shape"]);
-    refused(&mesh, 2, &["egg.shape", "input"]);
-    assert_eq!(fs::read(here.join("egg.shape")).unwrap(), shape);
+    // A shape under the name of a mesh, so that only the rule for inputs stands in the way.
+    fs::copy(here.join("egg.shape"), here.join("egg.ply")).unwrap();
+    let mesh = moduli(here, &["mesh", "egg.ply", "-o", "./egg.ply"]);
+    refused(&mesh, 2, &["egg.ply", "input"]);
+    assert_eq!(fs::read(here.join("egg.ply")).unwrap(), shape);
 }
 
 #[test]
@@ -39,6 +41,25 @@ fn two_clouds_of_one_name_are_bad_usage() {
     refused(&fit, 2, &["a/cloud.xyz", "b/cloud.xyz", "cloud.shape"]);
     assert!(fit.stdout.is_empty());
     assert!(!here.join("shapes").exists());
+}
+
+#[test]
+fn a_mesh_has_the_format_of_its_name() {
+    let folder = egg();
+    let here = folder.path();
+    for name in ["m.ply", "m.obj", "m.stl", "m.OFF"] {
+        let rows = ["--rows", "20", "--columns", "20"];
+        let arguments = ["mesh", "egg.shape", "-o", name];
+        stdout(&moduli(here, &[&arguments[..], &rows].concat()));
+        let said = stdout(&moduli(here, &["info", name, "--json"]));
+        let info: serde_json::Value = serde_json::from_str(&said).unwrap();
+        assert_eq!(info["kind"], "mesh", "{name}");
+        let format = name[2..].to_uppercase();
+        assert_eq!(info["format"], format.as_str(), "{name}");
+    }
+    let glb = moduli(here, &["mesh", "egg.shape", "-o", "m.glb"]);
+    refused(&glb, 2, &["m.glb", ".off"]);
+    assert!(!here.join("m.glb").exists());
 }
 
 #[cfg(unix)]

@@ -82,7 +82,7 @@ fn the_stored_library_is_usable_and_its_grasps_are_spread_out() {
         assert!(low > 0.005 && high < 0.2, "{}: {low} to {high}", entry.id);
         assert_eq!(entry.grasps.len(), settings.grasps, "{}", entry.id);
         assert!(entry.grasps.is_sorted_by(|a, b| a.quality >= b.quality));
-        let radius = shape.coefficients().get(0, 0) / (4.0 * std::f64::consts::PI).sqrt();
+        let radius = shape.mean_radius();
         let contacts: Vec<_> = entry
             .grasps
             .iter()

@@ -21,7 +21,7 @@ fn every_convention_finds_stable_grasps_of_its_own_scale() {
         let grasps = measure.synthesize(&hand, &poses).unwrap();
         assert!(!grasps.is_empty(), "no stable grasp under {name}");
         for grasp in grasps.iter() {
-            assert!(measure.is_stable(grasp.quality()) && grasp.lower() > 0.0);
+            assert!(measure.is_stable(grasp.quality()) && grasp.epsilon().lower > 0.0);
         }
     }
     let paper = object.measure(&Convention::paper()).unwrap();

@@ -61,11 +61,14 @@ pub enum LoadError {
         /// The extension given.
         extension: String,
     },
-    /// The bytes are VRML, which is recognised only to say so.
-    #[error(
-        "VRML is not supported; convert it to PLY, OBJ, STL or OFF (byte 0: expected one of those)"
-    )]
-    Vrml,
+    /// The bytes are of a kind that is known and not read.
+    #[error("this is {kind}, which is not read; {advice}")]
+    Foreign {
+        /// What the file is.
+        kind: &'static str,
+        /// What to do.
+        advice: &'static str,
+    },
     /// The file has no bytes.
     #[error("byte 0: the file is empty; expected {format} data")]
     Empty {

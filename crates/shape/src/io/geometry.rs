@@ -44,8 +44,22 @@ impl fmt::Display for Warning {
             }
             Self::Unit { extent } => write!(
                 f,
-                "the largest extent is {extent} m; is the file in metres?"
+                "the largest extent is {} m; is the file in metres?",
+                Metres(*extent)
             ),
+        }
+    }
+}
+
+/// A length in metres, short whatever its size.
+struct Metres(f64);
+
+impl fmt::Display for Metres {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if (1e-3..1e6).contains(&self.0) {
+            write!(f, "{:.3}", self.0)
+        } else {
+            write!(f, "{:.3e}", self.0)
         }
     }
 }

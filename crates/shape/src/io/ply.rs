@@ -1,7 +1,6 @@
 //! PLY: ASCII and both binary orders, any extra properties.
 
 use std::borrow::Cow;
-use std::io::Write;
 
 use nalgebra::Point3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -12,7 +11,6 @@ use ply_rs_bw::ply::{
 
 use super::geometry::{Raw, fan};
 use super::ply_error::PlyError;
-use crate::triangle_mesh::TriangleMesh;
 
 /// Vertices of a PLY file; rows with NaN or infinite coordinates are dropped and counted.
 #[derive(Clone, Debug, PartialEq)]
@@ -255,33 +253,11 @@ fn number(property: &Property) -> Option<f64> {
     }
 }
 
-/// Writes a mesh as binary little-endian PLY with double coordinates.
-pub fn write_ply(mesh: &TriangleMesh, out: &mut impl Write) -> std::io::Result<()> {
-    write!(
-        out,
-        "ply\nformat binary_little_endian 1.0\ncomment metres\nelement vertex {}\n\
-         property double x\nproperty double y\nproperty double z\n\
-         element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
-        mesh.vertices.len(),
-        mesh.triangles.len()
-    )?;
-    for p in &mesh.vertices {
-        for x in p.iter() {
-            out.write_all(&x.to_le_bytes())?;
-        }
-    }
-    for triangle in &mesh.triangles {
-        out.write_all(&[3])?;
-        for corner in triangle {
-            out.write_all(&corner.to_le_bytes())?;
-        }
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::io::write_ply;
+    use crate::triangle_mesh::TriangleMesh;
 
     #[test]
     fn ascii_with_extra_properties_and_a_nan_row() {
