@@ -136,7 +136,10 @@ impl Finder<'_> {
                 met: false,
                 ..self.placement(found.reached)
             };
-            let settled = self.measure.grasp_of(directions, contacts, source)?;
+            let quality = found.quality;
+            let settled = self
+                .measure
+                .grasp_of(directions, contacts, quality, source)?;
             carried.grasp = settled.with_hand(Some(hand));
         }
         Ok(())

@@ -227,7 +227,7 @@ fn carry_one(
         naive,
     };
     Ok(CarriedGrasp {
-        grasp: measure.grasp_of(arrived.contacts, contacts, source)?,
+        grasp: measure.grasp_of(arrived.contacts, contacts, arrived.quality, source)?,
         hand: Some(hand),
     })
 }

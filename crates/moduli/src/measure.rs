@@ -102,17 +102,32 @@ impl<'a> Measure<'a> {
     /// A quality cannot be computed.
     pub fn grasp(&self, directions: &[Direction], source: Source) -> Result<Grasp, Error> {
         let contacts = contacts_on(self.object.field(), directions);
-        Ok(self.grasp_of(directions.to_vec(), contacts, source)?)
+        let epsilon = self.epsilon_of(&contacts)?;
+        let frame = *self.object.frame();
+        Ok(Grasp::new(
+            directions.to_vec(),
+            contacts,
+            epsilon,
+            source,
+            frame,
+        ))
     }
 
     /// The grasp with these contacts, centred frame, in these directions.
+    ///
+    /// `quality` is what the search that found it reported, and what it is ranked by: a search that
+    /// goes on from grasp to grasp differs from this one in the last digits.
     pub(crate) fn grasp_of(
         &self,
         directions: Vec<Direction>,
         contacts: Vec<Contact>,
+        quality: f64,
         source: Source,
     ) -> Result<Grasp, QualityError> {
-        let epsilon = self.epsilon_of(&contacts)?;
+        let epsilon = Epsilon {
+            quality,
+            ..self.epsilon_of(&contacts)?
+        };
         let frame = *self.object.frame();
         Ok(Grasp::new(directions, contacts, epsilon, source, frame))
     }

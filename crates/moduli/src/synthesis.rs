@@ -111,7 +111,7 @@ impl Measure<'_> {
             preshape: found.preshape,
         };
         let (directions, contacts) = (found.directions.clone(), found.contacts.clone());
-        let grasp = self.grasp_of(directions, contacts, source)?;
+        let grasp = self.grasp_of(directions, contacts, found.quality, source)?;
         Ok(grasp.with_hand(Some(HandPlacement {
             centred_from_palm: found.object_from_palm,
             joints: found.joints.clone(),
