@@ -11,6 +11,7 @@ mod pcd;
 pub mod ply;
 mod ply_error;
 mod stl;
+mod table_header;
 mod text;
 mod write;
 mod xyz;
