@@ -14,7 +14,7 @@ pub(crate) fn constraints(
 ) -> Result<Constraints, Failure> {
     let constraints = Constraints {
         least_separation: metres("--separation", options.separation)?,
-        reach: metres("--reach", options.reach)?,
+        largest_separation: metres("--reach", options.reach)?,
         caps: options
             .allow
             .iter()

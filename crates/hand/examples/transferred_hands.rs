@@ -140,7 +140,7 @@ impl Study {
         let transfer = Transfer::new(end(from), end(to), &self.convention);
         let arrived = Continuation::default().carry(&transfer, &source.directions)?;
         let naive = transfer.naive(&source.directions)?.quality;
-        let wanted = contacts_on(to, &arrived.contacts);
+        let wanted = contacts_on(to, &arrived.directions);
         let known = HandState {
             object_from_palm: carried_pose(&source.object_from_palm, &source.contacts, &wanted),
             joints: source.joints.clone(),

@@ -214,7 +214,7 @@ fn carry_one(
 ) -> Result<CarriedGrasp, space::TransferError> {
     let arrived = Continuation::default().carry(pair, directions)?;
     let naive = pair.naive(directions)?.quality;
-    let contacts = contacts_on(pair.target(), &arrived.contacts);
+    let contacts = contacts_on(pair.target(), &arrived.directions);
     let held = contacts_on(pair.source(), directions);
     let hand = HandState {
         object_from_palm: carried_pose(&grasp.centred_from_palm(), &held, &contacts),
@@ -227,7 +227,7 @@ fn carry_one(
         naive,
     };
     Ok(CarriedGrasp {
-        grasp: measure.grasp_of(arrived.contacts, contacts, arrived.quality, source)?,
+        grasp: measure.grasp_of(arrived.directions, contacts, arrived.quality, source)?,
         hand: Some(hand),
     })
 }

@@ -152,6 +152,6 @@ impl<'a> Measure<'a> {
         let start = grasp.directions();
         let field = self.object.field();
         let end = MonotoneAscent::default().climb(field, start, &mut objective, |_| {})?;
-        self.grasp(&end.contacts, grasp.source().clone())
+        self.grasp(&end.directions, grasp.source().clone())
     }
 }

@@ -2,10 +2,10 @@
 
 mod bundle;
 mod climber;
+mod discontinuities;
 mod monotone;
 mod paper;
 mod settings;
-mod walls;
 
 pub use monotone::AscentError;
 pub use paper::PaperAscent;
@@ -16,8 +16,8 @@ use sph::Direction;
 /// One state of an ascent, for traces.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<'a> {
-    /// Where the contacts are.
-    pub contacts: &'a [Direction],
+    /// The directions of the contacts.
+    pub directions: &'a [Direction],
     /// Q there.
     pub quality: f64,
     /// Slope of Q that is left, per radian: of the one gradient in the paper's ascent, of what all
@@ -28,8 +28,8 @@ pub struct Step<'a> {
 /// Where an ascent ended.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ascent {
-    /// Final contacts.
-    pub contacts: Vec<Direction>,
+    /// The directions of the contacts at the end.
+    pub directions: Vec<Direction>,
     /// Q at the start.
     pub start_quality: f64,
     /// Q at the end.
@@ -40,11 +40,12 @@ pub struct Ascent {
     /// ours |u|/ρ for the u that maximises the least of the linearised facets less |u|²/2ρ within
     /// the limits, ρ = 0.01 (the gradient of the Moreau envelope). 0 exactly at a maximum.
     ///
-    /// Q of friction pyramids jumps where their frames do ([`Quality::walls`]). Jumps over which the
-    /// climb found Q to fall count as limits, so this is the slope on the side of the jump where the
-    /// grasp is: 0 also where Q has no maximum but a supremum against a jump.
+    /// Q of friction pyramids is discontinuous where their frames are
+    /// ([`Quality::discontinuities`]). Those across which the climb found Q to fall count as limits,
+    /// so this is the slope on the side where the grasp is: 0 also where Q has no maximum but a
+    /// supremum at a discontinuity.
     ///
-    /// [`Quality::walls`]: crate::Quality::walls
+    /// [`Quality::discontinuities`]: crate::Quality::discontinuities
     pub stationarity: f64,
     /// Qualities computed on the way.
     pub evaluations: usize,

@@ -25,7 +25,7 @@ pub struct Constraints {
     /// Least distance between any two contacts, metres.
     pub least_separation: Option<f64>,
     /// Largest distance between any two contacts, metres: what a hand can span.
-    pub reach: Option<f64>,
+    pub largest_separation: Option<f64>,
     /// The allowed part of the surface: every contact's direction is in all of these.
     pub caps: Vec<Cap>,
     /// Force closure must hold under this objective too. With [`Objective::with_friction`] and a
@@ -71,7 +71,7 @@ const INSIDE: f64 = 1e-6;
 /// Largest move of one repair, radians.
 const REPAIR_STEP: f64 = 0.3;
 
-const REACH: &str = "the reach";
+const LARGEST: &str = "the largest separation";
 
 /// One limit at a place: slack ≥ 0 and its slope.
 struct Limit {
@@ -87,7 +87,7 @@ impl Constraints {
     /// Whether anything is asked for at all.
     pub fn is_empty(&self) -> bool {
         self.least_separation.is_none()
-            && self.reach.is_none()
+            && self.largest_separation.is_none()
             && self.caps.is_empty()
             && self.closed_under.is_none()
     }
@@ -103,7 +103,7 @@ impl Constraints {
         };
         for (name, value) in [
             ("least separation", self.least_separation),
-            ("reach", self.reach),
+            ("largest separation", self.largest_separation),
         ] {
             if let Some(value) = value
                 && !(value.is_finite() && value >= 0.0)
@@ -111,10 +111,14 @@ impl Constraints {
                 return bad(name, value, "metres ≥ 0");
             }
         }
-        if let (Some(least), Some(reach)) = (self.least_separation, self.reach)
-            && least > reach
+        if let (Some(least), Some(largest)) = (self.least_separation, self.largest_separation)
+            && least > largest
         {
-            return bad("least separation", least, "no more than the reach");
+            return bad(
+                "least separation",
+                least,
+                "no more than the largest separation",
+            );
         }
         match self.caps.iter().find(|c| !(c.least_cosine.abs() <= 1.0)) {
             Some(cap) => bad("cap", cap.least_cosine, "a cosine in [−1, 1]"),
@@ -122,9 +126,9 @@ impl Constraints {
         }
     }
 
-    /// Whether contacts keep the limits of place: separation, reach and caps.
-    pub fn allow(&self, surface: &impl Surface, contacts: &[Direction]) -> bool {
-        (0..self.count(contacts.len())).all(|k| self.limit(surface, contacts, k).slack >= 0.0)
+    /// Whether contacts keep the limits of place: separations and caps.
+    pub fn allow(&self, surface: &impl Surface, directions: &[Direction]) -> bool {
+        (0..self.count(directions.len())).all(|k| self.limit(surface, directions, k).slack >= 0.0)
     }
 
     /// Contacts moved into the limits of place, each violated one in turn along its slope.
@@ -134,9 +138,9 @@ impl Constraints {
     pub fn repair(
         &self,
         surface: &impl Surface,
-        contacts: &[Direction],
+        directions: &[Direction],
     ) -> Result<Vec<Direction>, ConstraintError> {
-        let mut here = contacts.to_vec();
+        let mut here = directions.to_vec();
         self.repair_in_place(surface, &mut here)?;
         Ok(here)
     }
@@ -145,19 +149,19 @@ impl Constraints {
     pub fn repair_in_place(
         &self,
         surface: &impl Surface,
-        contacts: &mut [Direction],
+        directions: &mut [Direction],
     ) -> Result<(), ConstraintError> {
-        let count = self.count(contacts.len());
+        let count = self.count(directions.len());
         for round in 0..ROUNDS {
             let mut kept = true;
             for k in 0..count {
-                let limit = self.limit(surface, contacts, k);
+                let limit = self.limit(surface, directions, k);
                 if limit.slack < 0.0 {
                     kept = false;
                     if round < ROUNDS / 2 {
-                        limit.step_inside(contacts);
+                        limit.step_inside(directions);
                     } else {
-                        limit.step_around(contacts);
+                        limit.step_around(directions);
                     }
                 }
             }
@@ -167,7 +171,7 @@ impl Constraints {
         }
         let share = |l: &Limit| l.slack / l.scale;
         let worst = (0..count)
-            .map(|k| self.limit(surface, contacts, k))
+            .map(|k| self.limit(surface, directions, k))
             .min_by(|a, b| share(a).total_cmp(&share(b)));
         match worst {
             Some(limit) if limit.slack < 0.0 => Err(ConstraintError::Unreachable {
@@ -182,21 +186,21 @@ impl Constraints {
     pub(crate) fn linearise<S: Surface>(
         &mut self,
         surface: &S,
-        contacts: &[Direction],
+        directions: &[Direction],
         out: &mut LinearPieces,
     ) -> Result<(), QualityError> {
-        out.reset(contacts.len());
+        out.reset(directions.len());
         if self.is_empty() {
             return Ok(());
         }
         if let Some(second) = &mut self.closed_under {
-            let value = second.value(surface, contacts)?;
-            second.linearise(surface, contacts, out)?;
+            let value = second.value(surface, directions)?;
+            second.linearise(surface, directions, out)?;
             out.raise(value);
         }
-        for k in 0..self.count(contacts.len()) {
-            let limit = self.limit(surface, contacts, k);
-            limit.write(contacts, out.push(limit.slack));
+        for k in 0..self.count(directions.len()) {
+            let limit = self.limit(surface, directions, k);
+            limit.write(directions, out.push(limit.slack));
         }
         Ok(())
     }
@@ -205,44 +209,44 @@ impl Constraints {
     pub(crate) fn closed<S: Surface>(
         &mut self,
         surface: &S,
-        contacts: &[Direction],
+        directions: &[Direction],
     ) -> Result<bool, QualityError> {
         match &mut self.closed_under {
-            Some(second) => Ok(second.value(surface, contacts)? > 0.0),
+            Some(second) => Ok(second.value(surface, directions)? > 0.0),
             None => Ok(true),
         }
     }
 
     /// Number of limits of place on some contacts: of each contact and cap, then of each pair.
     fn count(&self, contacts: usize) -> usize {
-        let of_a_pair =
-            usize::from(self.least_separation.is_some()) + usize::from(self.reach.is_some());
+        let of_a_pair = usize::from(self.least_separation.is_some())
+            + usize::from(self.largest_separation.is_some());
         let pairs = contacts * contacts.saturating_sub(1) / 2;
         self.caps.len() * contacts + of_a_pair * pairs
     }
 
     /// Limit k of these contacts.
-    fn limit(&self, surface: &impl Surface, contacts: &[Direction], k: usize) -> Limit {
-        let of_caps = self.caps.len() * contacts.len();
+    fn limit(&self, surface: &impl Surface, directions: &[Direction], k: usize) -> Limit {
+        let of_caps = self.caps.len() * directions.len();
         if k < of_caps {
-            return self.caps[k / contacts.len()].limit(contacts, k % contacts.len());
+            return self.caps[k / directions.len()].limit(directions, k % directions.len());
         }
-        match (self.least_separation, self.reach) {
-            (Some(least), Some(reach)) => {
+        match (self.least_separation, self.largest_separation) {
+            (Some(least), Some(largest)) => {
                 let (pair, bound) = ((k - of_caps) / 2, (k - of_caps) % 2);
-                let far = (bound == 1).then_some(reach);
-                of_pair(surface, contacts, pair, least, far)
+                let far = (bound == 1).then_some(largest);
+                of_pair(surface, directions, pair, least, far)
             }
-            (least, far) => of_pair(surface, contacts, k - of_caps, least.unwrap_or(0.0), far),
+            (least, far) => of_pair(surface, directions, k - of_caps, least.unwrap_or(0.0), far),
         }
     }
 }
 
 impl Cap {
-    fn limit(&self, contacts: &[Direction], i: usize) -> Limit {
+    fn limit(&self, directions: &[Direction], i: usize) -> Limit {
         Limit {
             name: "a cap",
-            slack: self.axis.dot(&contacts[i]) - self.least_cosine,
+            slack: self.axis.dot(&directions[i]) - self.least_cosine,
             scale: 1.0,
             by_move: [(i, self.axis.into_inner()), (i, Vector3::zeros())],
         }
@@ -252,21 +256,21 @@ impl Cap {
 /// The limit of one pair of contacts: at most `far` apart where that is given, else at least `least`.
 fn of_pair(
     surface: &impl Surface,
-    contacts: &[Direction],
+    directions: &[Direction],
     pair: usize,
     least: f64,
     far: Option<f64>,
 ) -> Limit {
     // Pairs in the order (0,1), (0,2), …, (1,2), …
     let (mut i, mut left) = (0, pair);
-    while left >= contacts.len() - 1 - i {
-        left -= contacts.len() - 1 - i;
+    while left >= directions.len() - 1 - i {
+        left -= directions.len() - 1 - i;
         i += 1;
     }
     let j = i + 1 + left;
     let (a, b) = (
-        surface.differential(&contacts[i]),
-        surface.differential(&contacts[j]),
+        surface.differential(&directions[i]),
+        surface.differential(&directions[j]),
     );
     let apart = a.position - b.position;
     let distance = apart.norm();
@@ -282,47 +286,47 @@ fn of_pair(
             scale: least.max(1e-3),
             by_move,
         },
-        Some(reach) => Limit {
-            name: REACH,
-            slack: reach - distance,
-            scale: reach.max(1e-3),
+        Some(largest) => Limit {
+            name: LARGEST,
+            slack: largest - distance,
+            scale: largest.max(1e-3),
             by_move: by_move.map(|(i, v)| (i, -v)),
         },
     }
 }
 
 impl Limit {
-    fn write(&self, contacts: &[Direction], slope: &mut [f64]) {
+    fn write(&self, directions: &[Direction], slope: &mut [f64]) {
         for (i, v) in &self.by_move {
-            let [a, b] = in_frame(&contacts[*i], v);
+            let [a, b] = in_frame(&directions[*i], v);
             slope[2 * i] += a;
             slope[2 * i + 1] += b;
         }
     }
 
-    /// Moves a pair along the sphere, together for the reach and apart for the separation: bumps of
+    /// Moves a pair along the sphere, together for the largest separation and apart for the least one: bumps of
     /// the surface can trap the way along slopes.
-    fn step_around(&self, contacts: &mut [Direction]) {
+    fn step_around(&self, directions: &mut [Direction]) {
         let [(i, _), (j, _)] = self.by_move;
         if i == j {
-            self.step_inside(contacts);
+            self.step_inside(directions);
             return;
         }
         let length = match self.name {
-            REACH => STEP_AROUND,
+            LARGEST => STEP_AROUND,
             _ => -STEP_AROUND,
         };
-        let (p, q) = (contacts[i], contacts[j]);
+        let (p, q) = (directions[i], directions[j]);
         let towards = |p: &Direction, q: &Direction| {
             let way = log(p, q);
             retract(p, &(way * (length / way.norm().max(STEP_AROUND))))
         };
-        (contacts[i], contacts[j]) = (towards(&p, &q), towards(&q, &p));
+        (directions[i], directions[j]) = (towards(&p, &q), towards(&q, &p));
     }
 
     /// The shortest move that, to first order, takes the slack just above 0.
-    fn step_inside(&self, contacts: &mut [Direction]) {
-        let mut slopes = self.by_move.map(|(i, v)| in_frame(&contacts[i], &v));
+    fn step_inside(&self, directions: &mut [Direction]) {
+        let mut slopes = self.by_move.map(|(i, v)| in_frame(&directions[i], &v));
         let square = |slopes: &[[f64; 2]; 2]| slopes.iter().map(|s| dot(s, s)).sum::<f64>();
         if square(&slopes) == 0.0 {
             // Contacts in one place, or at the far end of a cap's axis: any way out will do.
@@ -332,7 +336,7 @@ impl Limit {
         let wanted = (INSIDE * self.scale - self.slack) / square;
         let factor = wanted.min(REPAIR_STEP / square.sqrt());
         for ((i, _), slope) in self.by_move.iter().zip(slopes) {
-            contacts[*i] = moved(&contacts[*i], &slope.map(|s| factor * s));
+            directions[*i] = moved(&directions[*i], &slope.map(|s| factor * s));
         }
     }
 }

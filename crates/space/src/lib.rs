@@ -32,13 +32,13 @@ pub mod chart;
 pub mod constraints;
 pub mod gradient;
 pub mod metric;
+mod multistart;
 pub mod objective;
 pub mod path;
 pub mod point;
 pub mod quality;
 pub mod resolved;
 pub mod sample;
-mod scatter;
 pub mod transfer;
 
 pub use ascent::{Ascent, AscentError, MonotoneAscent, PaperAscent, Step};

@@ -15,8 +15,8 @@ use crate::point::ModuliPoint;
 ///
 /// // Half-way between balls of 3 and 5 cm is the ball of 4 cm.
 /// let ball = |radius| RadialShape::sphere(4, radius);
-/// let small = ModuliPoint { surface: ball(0.03)?, contacts: vec![] };
-/// let large = ModuliPoint { surface: ball(0.05)?, contacts: vec![] };
+/// let small = ModuliPoint { surface: ball(0.03)?, directions: vec![] };
+/// let large = ModuliPoint { surface: ball(0.05)?, directions: vec![] };
 /// let middle = Path { from: &small, to: &large }.at(0.5)?;
 /// let (least, largest) = middle.surface.radius_bounds();
 /// assert!((least - 0.04).abs() < 1e-6 && (largest - 0.04).abs() < 1e-6);
@@ -34,16 +34,16 @@ impl Path<'_> {
     /// γ(t), t ∈ [0, 1]. It is in M^rad × (S²)^m by Lemma 3.2. Extra contacts of the longer end
     /// are left out.
     pub fn at(&self, t: f64) -> Result<ModuliPoint<RadialShape>, SpaceError> {
-        let contacts: Vec<Direction> = self
+        let directions: Vec<Direction> = self
             .from
-            .contacts
+            .directions
             .iter()
-            .zip(&self.to.contacts)
+            .zip(&self.to.directions)
             .map(|(p, q)| geodesic(p, q, t))
             .collect();
         Ok(ModuliPoint {
             surface: deformation(&self.from.surface, &self.to.surface, t)?,
-            contacts,
+            directions,
         })
     }
 }

@@ -5,13 +5,13 @@ use nalgebra::Point3;
 use shape::Surface;
 use sph::Direction;
 
-/// (f, (p₁, …, p_m)) ∈ M × (S²)^m: a surface and contacts on it (Definition 3.3 of the paper).
+/// (f, (p₁, …, p_m)) ∈ M × (S²)^m: a surface and directions of contacts (Definition 3.3 of the paper).
 #[derive(Clone, Debug)]
 pub struct ModuliPoint<S> {
     /// The surface f, in the centred frame.
     pub surface: S,
     /// The directions p₁, …, p_m of the contacts.
-    pub contacts: Vec<Direction>,
+    pub directions: Vec<Direction>,
 }
 
 impl<S: Surface> ModuliPoint<S> {
@@ -20,7 +20,7 @@ impl<S: Surface> ModuliPoint<S> {
     /// z is given, since conventions differ on it; see [`crate::Objective`].
     pub fn grasp(&self, centre: Point3<f64>) -> Grasp {
         Grasp {
-            contacts: contacts_on(&self.surface, &self.contacts),
+            contacts: contacts_on(&self.surface, &self.directions),
             centre,
         }
     }

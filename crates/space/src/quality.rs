@@ -7,7 +7,7 @@ use sph::direction::{retract, tangent_frame};
 
 /// Linear models excess_j + g_j·u of functions of the contacts' tangent moves u.
 ///
-/// u has two numbers a contact, radians, in the frame of [`sph::direction::tangent_frame`] at each
+/// u has two numbers per contact, radians, in the frame of [`sph::direction::tangent_frame`] at each
 /// contact. Flat storage, kept between steps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LinearPieces {
@@ -17,7 +17,7 @@ pub struct LinearPieces {
 }
 
 impl LinearPieces {
-    /// Forgets all pieces; the next ones have two numbers a contact.
+    /// Forgets all pieces; the next ones have two numbers per contact.
     pub fn reset(&mut self, contacts: usize) {
         self.dimension = 2 * contacts;
         self.excess.clear();
@@ -84,24 +84,24 @@ impl LinearPieces {
 /// Implemented by [`crate::Objective`], exactly, and by [`ByDifferences`] for any function. The
 /// surface comes with every call, so that one quality can follow a deforming surface.
 pub trait Quality<S> {
-    /// The quality at contacts. A negative value says how far an open grasp is from closure.
-    fn value(&mut self, surface: &S, contacts: &[Direction]) -> Result<f64, QualityError>;
+    /// The quality at the directions of contacts. A negative value says how far an open grasp is from closure.
+    fn value(&mut self, surface: &S, directions: &[Direction]) -> Result<f64, QualityError>;
 
-    /// The functions that decide, or are about to, linearised at contacts; the deciding one first,
+    /// The functions that decide, or are about to, linearised there; the deciding one first,
     /// with excess 0. `pieces` is emptied before.
     fn linearise(
         &mut self,
         surface: &S,
-        contacts: &[Direction],
+        directions: &[Direction],
         pieces: &mut LinearPieces,
     ) -> Result<(), QualityError>;
 
-    /// The slope of the deciding function alone, two numbers a contact; called where
+    /// The slope of the deciding function alone, two numbers per contact; called where
     /// [`Quality::value`] was called last.
     fn slope(
         &mut self,
         surface: &S,
-        contacts: &[Direction],
+        directions: &[Direction],
         slope: &mut [f64],
     ) -> Result<(), QualityError>;
 
@@ -110,18 +110,18 @@ pub trait Quality<S> {
         0.0
     }
 
-    /// Where the quality jumps: the walls around the side on which `side` is, as functions of the moves
-    /// from `contacts`, positive on that side, linearised. `walls` is emptied before; their number and
-    /// order depend on nothing but the side. None by default.
-    fn walls(
+    /// Where the quality is discontinuous: the boundaries of the region in which `side` is, as functions
+    /// of the moves from `directions`, positive in that region, linearised. `out` is emptied before;
+    /// their number and order depend on nothing but the region. None by default.
+    fn discontinuities(
         &mut self,
         surface: &S,
         side: &[Direction],
-        contacts: &[Direction],
-        walls: &mut LinearPieces,
+        directions: &[Direction],
+        out: &mut LinearPieces,
     ) {
         let _ = (surface, side);
-        walls.reset(contacts.len());
+        out.reset(directions.len());
     }
 
     /// Forgets what earlier values left behind: what follows depends on nothing but its arguments.
@@ -154,29 +154,29 @@ impl<F> ByDifferences<F> {
 }
 
 impl<S, F: FnMut(&S, &[Direction]) -> f64> Quality<S> for ByDifferences<F> {
-    fn value(&mut self, surface: &S, contacts: &[Direction]) -> Result<f64, QualityError> {
+    fn value(&mut self, surface: &S, directions: &[Direction]) -> Result<f64, QualityError> {
         self.evaluations += 1;
-        Ok((self.function)(surface, contacts))
+        Ok((self.function)(surface, directions))
     }
 
     fn linearise(
         &mut self,
         surface: &S,
-        contacts: &[Direction],
+        directions: &[Direction],
         pieces: &mut LinearPieces,
     ) -> Result<(), QualityError> {
-        pieces.reset(contacts.len());
-        self.slope(surface, contacts, pieces.push(0.0))
+        pieces.reset(directions.len());
+        self.slope(surface, directions, pieces.push(0.0))
     }
 
     fn slope(
         &mut self,
         surface: &S,
-        contacts: &[Direction],
+        directions: &[Direction],
         slope: &mut [f64],
     ) -> Result<(), QualityError> {
-        let mut moved = contacts.to_vec();
-        for (i, p) in contacts.iter().enumerate() {
+        let mut moved = directions.to_vec();
+        for (i, p) in directions.iter().enumerate() {
             let (e1, e2) = tangent_frame(p);
             for (k, e) in [e1, e2].iter().enumerate() {
                 let mut shifted = |h: f64| {
@@ -228,12 +228,12 @@ mod tests {
             |_: &(), p: &[Direction]| p.iter().map(|p| p.dot(&target)).sum(),
             1e-5,
         );
-        let contacts = [Vector3::x_axis(), Vector3::z_axis()];
+        let directions = [Vector3::x_axis(), Vector3::z_axis()];
         let mut pieces = LinearPieces::default();
-        quality.linearise(&(), &contacts, &mut pieces).unwrap();
+        quality.linearise(&(), &directions, &mut pieces).unwrap();
         assert_eq!((pieces.len(), pieces.dimension()), (1, 4));
         assert_eq!(Quality::<()>::evaluations(&quality), 8);
-        for (i, p) in contacts.iter().enumerate() {
+        for (i, p) in directions.iter().enumerate() {
             let exact = in_frame(p, &target);
             let found = &pieces.get(0).1[2 * i..2 * i + 2];
             for (a, b) in found.iter().zip(&exact) {

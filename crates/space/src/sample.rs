@@ -36,10 +36,10 @@ pub fn perturbed(
     rng: &mut impl Rng,
 ) -> Result<ModuliPoint<RadialShape>, RadialError> {
     let noisy = perturb_band(shape.coefficients(), band, sigma, rng);
-    let contacts = (0..contacts).map(|_| uniform_direction(rng)).collect();
+    let directions = (0..contacts).map(|_| uniform_direction(rng)).collect();
     Ok(ModuliPoint {
         surface: RadialShape::new(noisy)?,
-        contacts,
+        directions,
     })
 }
 
@@ -58,7 +58,7 @@ impl ContactSampling<'_> {
     pub fn draw(&self, rng: &mut impl Rng) -> Vec<Direction> {
         match *self {
             Self::Uniform(count) => (0..count).map(|_| uniform_direction(rng)).collect(),
-            Self::Around(contacts, deviation) => contacts
+            Self::Around(directions, deviation) => directions
                 .iter()
                 .map(|p| {
                     let (e1, e2) = tangent_frame(p);
@@ -86,7 +86,7 @@ pub fn perturbed_spherical(
         .each_ref()
         .map(|c| perturb_band(c, band.clone(), sigma, rng));
     Ok(ModuliPoint {
-        contacts: contacts.draw(rng),
+        directions: contacts.draw(rng),
         surface: SphericalShape::new(x, y, z)?,
     })
 }

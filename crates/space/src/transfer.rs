@@ -36,8 +36,8 @@ pub enum TransferError {
 /// A grasp that has arrived.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transferred {
-    /// Contacts on the target.
-    pub contacts: Vec<Direction>,
+    /// The directions of the contacts on the target.
+    pub directions: Vec<Direction>,
     /// Q on the source, before anything moved.
     pub start_quality: f64,
     /// Q on the target.
@@ -183,7 +183,7 @@ impl<'a> Transfer<'a> {
         let start_quality = self.objective(0.0, from).quality_at(from, directions)?;
         let quality = self.objective(1.0, to).quality_at(to, directions)?;
         Ok(Transferred {
-            contacts: directions.to_vec(),
+            directions: directions.to_vec(),
             start_quality,
             quality,
             evaluations: 2,
@@ -255,7 +255,7 @@ impl PaperTransfer {
 fn carry_over(
     transfer: &Transfer,
     stations: &[RadialField],
-    contacts: &[Direction],
+    directions: &[Direction],
     mut climb: impl FnMut(
         f64,
         &RadialField,
@@ -264,7 +264,7 @@ fn carry_over(
     ) -> Result<Ascent, QualityError>,
 ) -> Result<Transferred, TransferError> {
     let mut arrived = Transferred {
-        contacts: contacts.to_vec(),
+        directions: directions.to_vec(),
         start_quality: 0.0,
         quality: 0.0,
         evaluations: 0,
@@ -275,7 +275,7 @@ fn carry_over(
     for (k, station) in stations.iter().enumerate() {
         let t = parameter(k, stations.len());
         let mut objective = transfer.objective(t, station);
-        let ascent = climb(t, station, &arrived.contacts, &mut objective)?;
+        let ascent = climb(t, station, &arrived.directions, &mut objective)?;
         if k == 0 {
             arrived.start_quality = ascent.start_quality;
         } else if arrived.quality > 0.0 && ascent.quality <= 0.0 {
@@ -284,7 +284,7 @@ fn carry_over(
         arrived.quality = ascent.quality;
         arrived.evaluations += ascent.evaluations;
         arrived.stationarity = Some(ascent.stationarity);
-        arrived.contacts = ascent.contacts;
+        arrived.directions = ascent.directions;
     }
     arrived.open = (arrived.quality <= 0.0).then_some(StillOpen {
         distance: None,

@@ -62,7 +62,7 @@ fn climb(
     let mut steps = Vec::new();
     let keep = |step: &Step| {
         if options.moved.trace.is_some() {
-            let contacts = points(object, step.contacts);
+            let contacts = points(object, step.directions);
             steps.push(TraceStep::new(1.0, step, contacts));
         }
     };
@@ -80,7 +80,7 @@ fn climb(
     Ok(Moved {
         reason: (ascent.quality <= 0.0)
             .then(|| format!("open; {:.4} from force closure", -ascent.margin)),
-        directions: ascent.contacts,
+        directions: ascent.directions,
         start_quality: ascent.start_quality,
         quality: ascent.quality,
         evaluations: ascent.evaluations,

@@ -149,7 +149,7 @@ fn carry(
     };
     Ok(Moved {
         reason: end.open.map(|open| open.to_string()),
-        directions: end.contacts,
+        directions: end.directions,
         start_quality: end.start_quality,
         quality: end.quality,
         evaluations: end.evaluations,
@@ -168,7 +168,7 @@ fn points(transfer: &Transfer, to: &Object, t: f64, step: &Step) -> Vec<[f64; 3]
     let on = |surface: &RadialField, p| surface.point(p).coords;
     let between =
         |p| Point3::from(on(transfer.source(), p) * (1.0 - t) + on(transfer.target(), p) * t);
-    step.contacts
+    step.directions
         .iter()
         .map(|p| to.frame().to_cloud(&between(p)).into())
         .collect()

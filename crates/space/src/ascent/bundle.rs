@@ -72,13 +72,13 @@ impl Bundle {
         self.moves.reserve(dimension);
     }
 
-    /// The maximiser, shortened to `reach` if it is longer. One piece or more.
+    /// The maximiser, shortened to `largest_move` if it is longer. One piece or more.
     pub(super) fn solve(
         &mut self,
         pieces: &LinearPieces,
         limits: &LinearPieces,
         rho: f64,
-        reach: f64,
+        largest_move: f64,
     ) -> Promise {
         self.mix(&Problem {
             pieces,
@@ -86,7 +86,7 @@ impl Bundle {
             rho,
         });
         let slope = norm(&self.mixed);
-        let length = (rho * slope).min(reach);
+        let length = (rho * slope).min(largest_move);
         let factor = if slope > 0.0 { length / slope } else { 0.0 };
         self.moves.clear();
         self.moves.extend(self.mixed.iter().map(|g| factor * g));
@@ -272,10 +272,10 @@ mod tests {
         list: &[(f64, [f64; 2])],
         limits: &[(f64, [f64; 2])],
         rho: f64,
-        reach: f64,
+        largest_move: f64,
     ) -> (Promise, Vec<f64>) {
         let mut bundle = Bundle::default();
-        let promise = bundle.solve(&pieces(list), &pieces(limits), rho, reach);
+        let promise = bundle.solve(&pieces(list), &pieces(limits), rho, largest_move);
         (promise, bundle.moves().to_vec())
     }
 

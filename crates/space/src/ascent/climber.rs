@@ -6,8 +6,8 @@ use sph::Direction;
 use sph::direction::tangent_frame;
 
 use super::bundle::{Bundle, Promise};
+use super::discontinuities::{Crossed, Discontinuities};
 use super::settings::MonotoneAscent;
-use super::walls::{Crossed, Walls};
 use crate::constraints::Constraints;
 use crate::quality::{LinearPieces, Quality, dot, moved};
 
@@ -24,11 +24,11 @@ const AFTER_FORGETTING: f64 = 0.1;
 /// ρ of the stationarity that is reported.
 const REPORT_RHO: f64 = 0.01;
 
-/// What became of a step: with the share of the promise that was kept, or stopped by a new wall.
+/// What became of a step: with the share of the promise that was kept, or stopped by a new discontinuity.
 enum Outcome {
     Taken(f64),
     Refused(f64),
-    Walled,
+    Discontinuity,
 }
 
 /// Where a climb stands, with everything that steps reuse.
@@ -41,7 +41,7 @@ pub(super) struct Climber<'a, S, Q> {
     there: Vec<Direction>,
     pieces: LinearPieces,
     limits: LinearPieces,
-    walls: Walls,
+    discontinuities: Discontinuities,
     bundle: Bundle,
     slope: Vec<f64>,
     /// Pieces that were linearised here; the others come from rejected steps.
@@ -71,7 +71,7 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
             value,
             pieces: LinearPieces::default(),
             limits: LinearPieces::default(),
-            walls: Walls::default(),
+            discontinuities: Discontinuities::default(),
             bundle: Bundle::default(),
             slope: Vec::new(),
             own: 0,
@@ -88,7 +88,7 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
             pieces.reset(contacts);
             pieces.reserve(MOST_PIECES);
         }
-        self.walls.reserve(contacts);
+        self.discontinuities.reserve(contacts);
         self.bundle.reserve(2 * contacts);
         self.slope.reserve(2 * contacts);
     }
@@ -111,7 +111,7 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
             }
             let step = self
                 .bundle
-                .solve(&self.pieces, &self.limits, rho, settings.reach);
+                .solve(&self.pieces, &self.limits, rho, settings.largest_move);
             if fresh {
                 seen(&self.here, self.value, step.slope);
             }
@@ -128,12 +128,12 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
                     rho *= AFTER_FORGETTING;
                     continue;
                 }
-                if retried && !self.cross_a_wall(settings.least_gain)? {
+                if retried && !self.cross_a_discontinuity(settings.least_gain)? {
                     break;
                 }
                 // A climb that began here would look around as far as this.
                 if !retried {
-                    self.walls.fall();
+                    self.discontinuities.deactivate();
                     self.limit()?;
                 }
                 retried = !retried;
@@ -149,7 +149,7 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
                 Outcome::Taken(k) | Outcome::Refused(k) if k > 0.75 => 2.0,
                 Outcome::Taken(k) | Outcome::Refused(k) if k > 0.3 => 1.0,
                 Outcome::Taken(k) | Outcome::Refused(k) if k > 0.0 => 0.5,
-                Outcome::Walled => 1.0,
+                Outcome::Discontinuity => 1.0,
                 _ => 0.25,
             };
         }
@@ -170,8 +170,8 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
     /// Moves if the gain is a fair share of the promise.
     fn try_step(&mut self, step: &Promise) -> Result<Outcome, QualityError> {
         self.look_at_moves();
-        self.walls
-            .keep(self.surface, self.quality, &self.here, &mut self.there);
+        self.discontinuities
+            .correct(self.surface, self.quality, &self.here, &mut self.there);
         if !self.admitted()? {
             return Ok(Outcome::Refused(-1.0));
         }
@@ -182,17 +182,20 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
             self.arrive(value)?;
             return Ok(Outcome::Taken(kept_promise));
         }
-        let crossed = self
-            .walls
-            .raise(self.surface, self.quality, &self.here, &self.there);
+        let crossed = self.discontinuities.activate_crossed(
+            self.surface,
+            self.quality,
+            &self.here,
+            &self.there,
+        );
         match crossed {
             Crossed::Nothing => {}
             // What holds beyond a jump says nothing about this side.
             Crossed::New => {
                 self.limit()?;
-                return Ok(Outcome::Walled);
+                return Ok(Outcome::Discontinuity);
             }
-            Crossed::Standing => return Ok(Outcome::Refused(-1.0)),
+            Crossed::Active => return Ok(Outcome::Refused(-1.0)),
         }
         if value.is_finite() && self.pieces.len() < MOST_PIECES {
             self.remember(value)?;
@@ -214,17 +217,24 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
 
     /// Takes the trial state.
     fn arrive(&mut self, value: f64) -> Result<(), QualityError> {
-        self.walls
-            .leave(self.surface, self.quality, &self.here, &self.there);
+        self.discontinuities.deactivate_if_crossed(
+            self.surface,
+            self.quality,
+            &self.here,
+            &self.there,
+        );
         std::mem::swap(&mut self.here, &mut self.there);
         self.value = value;
         self.linearise()
     }
 
-    /// Goes just over the first near wall beyond which the quality is higher.
-    fn cross_a_wall(&mut self, least_gain: f64) -> Result<bool, QualityError> {
-        for wall in 0..self.walls.len() {
-            if !self.walls.step_over(wall, self.bundle.moves_mut()) {
+    /// Goes just across the first near discontinuity beyond which the quality is higher.
+    fn cross_a_discontinuity(&mut self, least_gain: f64) -> Result<bool, QualityError> {
+        for at in 0..self.discontinuities.len() {
+            if !self
+                .discontinuities
+                .moves_across(at, self.bundle.moves_mut())
+            {
                 continue;
             }
             self.look_at_moves();
@@ -258,15 +268,16 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         self.quality
             .linearise(self.surface, &self.here, &mut self.pieces)?;
         self.own = self.pieces.len();
-        self.walls.around(self.surface, self.quality, &self.here);
+        self.discontinuities
+            .around(self.surface, self.quality, &self.here);
         self.limit()
     }
 
-    /// The limits of a step: those of the constraints, and the walls that stand.
+    /// The limits of a step: those of the constraints, and the active discontinuities.
     fn limit(&mut self) -> Result<(), QualityError> {
         self.constraints
             .linearise(self.surface, &self.here, &mut self.limits)?;
-        self.walls.write(&mut self.limits);
+        self.discontinuities.write_active(&mut self.limits);
         Ok(())
     }
 

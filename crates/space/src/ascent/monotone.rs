@@ -13,8 +13,8 @@ use super::climber::Climber;
 use super::settings::MonotoneAscent;
 use super::{Ascent, Step};
 use crate::constraints::{ConstraintError, Constraints};
+use crate::multistart::nearby;
 use crate::quality::Quality;
-use crate::scatter::nearby;
 
 /// Why a climb within constraints has no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -86,7 +86,7 @@ impl MonotoneAscent {
         constraints.closed_under = Some(second);
         let reached = reached?;
         if reached.margin > 0.0 {
-            return Ok(reached.contacts);
+            return Ok(reached.directions);
         }
         Err(AscentError::Constraints(ConstraintError::FrictionMargin {
             by: -reached.margin,
@@ -138,7 +138,7 @@ impl MonotoneAscent {
             }
         }
         trace(&Step {
-            contacts: &best.contacts,
+            directions: &best.directions,
             quality: best.quality,
             stationarity: best.stationarity,
         });
@@ -146,7 +146,7 @@ impl MonotoneAscent {
         Ok(best)
     }
 
-    /// The best of a few starts scattered around the first one, within the limits.
+    /// The best of a few starts around the first one, within the limits.
     fn probe<S: Surface>(
         &self,
         surface: &S,
@@ -159,8 +159,8 @@ impl MonotoneAscent {
         let spread = FIRST_SPREAD + share * (std::f64::consts::FRAC_PI_2 - FIRST_SPREAD);
         let mut best: Option<(f64, Vec<Direction>)> = None;
         for probe in 0..PROBES {
-            let scattered = nearby(start, restart * PROBES + probe, spread);
-            let Ok(inside) = constraints.repair(surface, &scattered) else {
+            let drawn = nearby(start, restart * PROBES + probe, spread);
+            let Ok(inside) = constraints.repair(surface, &drawn) else {
                 continue;
             };
             if !constraints.closed(surface, &inside)? {
@@ -185,9 +185,9 @@ impl MonotoneAscent {
     ) -> Result<Ascent, QualityError> {
         let mut climber = Climber::new(surface, quality, constraints, start)?;
         let start_quality = climber.value.max(0.0);
-        climber.climb(self, enough, |contacts, value, slope| {
+        climber.climb(self, enough, |directions, value, slope| {
             trace(&Step {
-                contacts,
+                directions,
                 quality: value.max(0.0),
                 stationarity: slope,
             });
@@ -197,7 +197,7 @@ impl MonotoneAscent {
             quality: climber.value.max(0.0),
             margin: climber.value,
             stationarity: climber.stationarity(),
-            contacts: climber.here,
+            directions: climber.here,
             evaluations: 0,
         })
     }

@@ -61,7 +61,7 @@ impl PaperAscent {
             )?;
             let norm = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
             trace(&Step {
-                contacts: &directions,
+                directions: &directions,
                 quality,
                 stationarity: norm,
             });
@@ -78,12 +78,12 @@ impl PaperAscent {
         }
         let stationarity = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
         trace(&Step {
-            contacts: &directions,
+            directions: &directions,
             quality,
             stationarity,
         });
         Ok(Ascent {
-            contacts: directions,
+            directions,
             start_quality,
             quality,
             margin: quality,

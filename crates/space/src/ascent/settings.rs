@@ -6,7 +6,7 @@ pub struct MonotoneAscent {
     /// Most steps tried, taken or not, from one start.
     pub steps: usize,
     /// Longest move of all contacts together in one step, radians.
-    pub reach: f64,
+    pub largest_move: f64,
     /// Stop when no direction promises a slope above this, per radian.
     pub stationarity: f64,
     /// Stop when the model promises less than this.
@@ -21,7 +21,7 @@ impl Default for MonotoneAscent {
     fn default() -> Self {
         Self {
             steps: 200,
-            reach: 0.3,
+            largest_move: 0.3,
             stationarity: 1e-4,
             least_gain: 1e-7,
             restarts: 8,

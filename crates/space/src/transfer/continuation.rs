@@ -8,9 +8,9 @@ use sph::direction::angle;
 use super::{StillOpen, Transfer, TransferError, Transferred, parameter};
 use crate::ascent::{Ascent, AscentError, MonotoneAscent, Step};
 use crate::constraints::{ConstraintError, Constraints};
+use crate::multistart::nearby;
 use crate::objective::Objective;
 use crate::quality::Quality;
-use crate::scatter::nearby;
 
 /// A monotone ascent at each station of γ, a longer one on the target, and other ways to get there.
 ///
@@ -161,7 +161,7 @@ impl Continuation {
     fn carry_inside<Q: Quality<RadialField>>(
         &self,
         transfer: &Transfer,
-        contacts: &[Direction],
+        directions: &[Direction],
         constraints: &Constraints,
         quality_on: impl FnMut(f64, &RadialField) -> Q,
         mut trace: impl FnMut(f64, &Step),
@@ -179,23 +179,23 @@ impl Continuation {
             climbs: 0,
             lost_at: None,
         };
-        let (start_quality, mut best) = carrier.follow(&stations, contacts, &mut trace)?;
-        carrier.keep_better(&mut best, contacts)?;
+        let (start_quality, mut best) = carrier.follow(&stations, directions, &mut trace)?;
+        carrier.keep_better(&mut best, directions)?;
         if let Some(recovery) = &self.recovery {
             let wanted = recovery.below * start_quality.max(f64::MIN_POSITIVE);
             if best.quality < wanted {
-                carrier.scatter(recovery, contacts, &mut best)?;
+                carrier.multistart(recovery, directions, &mut best)?;
             }
             if best.quality < wanted && best.quality < 0.5 * start_quality && recovery.intervals > 0
             {
-                carrier.walk_again(recovery, contacts, &mut best)?;
+                carrier.continue_again(recovery, directions, &mut best)?;
             }
             if best.quality <= 0.0 {
-                carrier.restart(contacts, &mut best)?;
+                carrier.restart(directions, &mut best)?;
             }
             if best.quality < wanted {
                 for k in 0..recovery.polish {
-                    let close = nearby(&best.contacts, k, POLISH_SPREAD);
+                    let close = nearby(&best.directions, k, POLISH_SPREAD);
                     carrier.keep_better(&mut best, &close)?;
                 }
             }
@@ -216,7 +216,7 @@ impl Continuation {
                 lost_at: carrier.lost_at,
                 climbs: carrier.climbs,
             }),
-            contacts: best.contacts,
+            directions: best.directions,
         })
     }
 }
@@ -252,12 +252,12 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
     fn follow(
         &mut self,
         stations: &[RadialField],
-        contacts: &[Direction],
+        directions: &[Direction],
         trace: &mut impl FnMut(f64, &Step),
     ) -> Result<(f64, Ascent), TransferError> {
         let first = stations.first().unwrap_or(self.target);
         let t = parameter(0, stations.len());
-        let ascent = self.climb(t, first, contacts, trace)?;
+        let ascent = self.climb(t, first, directions, trace)?;
         let start_quality = ascent.start_quality;
         let mut here = Standing { t, ascent };
         for (k, station) in stations.iter().enumerate().skip(1) {
@@ -280,11 +280,11 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
         // The states of a climb that is thrown away are no part of the trace.
         let mut seen: Vec<(Vec<Direction>, f64, f64)> = Vec::new();
         let keep = &mut |_: f64, step: &Step| {
-            seen.push((step.contacts.to_vec(), step.quality, step.stationarity));
+            seen.push((step.directions.to_vec(), step.quality, step.stationarity));
         };
-        let there = self.climb(t, station, &here.ascent.contacts, keep)?;
+        let there = self.climb(t, station, &here.ascent.directions, keep)?;
         let lost = there.margin < splitting.least_kept * here.ascent.quality;
-        let farthest = farthest(&here.ascent.contacts, &there.contacts);
+        let farthest = farthest(&here.ascent.directions, &there.directions);
         // On a station where nothing near keeps the limits, halves would be no better.
         let kept_out = there.margin == f64::NEG_INFINITY;
         if depth < splitting.depth && !kept_out && (lost || farthest > splitting.longest_move) {
@@ -293,11 +293,11 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
             let here = self.advance(here, middle, &halfway, depth + 1, trace)?;
             return self.advance(here, t, station, splitting.depth, trace);
         }
-        for (contacts, quality, stationarity) in &seen {
+        for (directions, quality, stationarity) in &seen {
             trace(
                 t,
                 &Step {
-                    contacts,
+                    directions,
                     quality: *quality,
                     stationarity: *stationarity,
                 },
@@ -319,18 +319,22 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
     }
 
     /// Climbs from the best of many starts around the naive transfer and around the best end.
-    fn scatter(
+    fn multistart(
         &mut self,
         recovery: &Recovery,
-        contacts: &[Direction],
+        directions: &[Direction],
         best: &mut Ascent,
     ) -> Result<(), TransferError> {
         let mut quality = (self.quality_on)(1.0, self.target);
         let mut starts = Vec::with_capacity(recovery.probes);
         for k in 0..recovery.probes {
-            let middle = if k % 3 == 2 { &best.contacts } else { contacts };
-            let scattered = nearby(middle, k, recovery.spread);
-            let Ok(start) = self.constraints.repair(self.target, &scattered) else {
+            let middle = if k % 3 == 2 {
+                &best.directions
+            } else {
+                directions
+            };
+            let drawn = nearby(middle, k, recovery.spread);
+            let Ok(start) = self.constraints.repair(self.target, &drawn) else {
                 continue;
             };
             starts.push((quality.value(self.target, &start)?, start));
@@ -344,14 +348,14 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
     }
 
     /// A second continuation with other stations.
-    fn walk_again(
+    fn continue_again(
         &mut self,
         recovery: &Recovery,
-        contacts: &[Direction],
+        directions: &[Direction],
         best: &mut Ascent,
     ) -> Result<(), TransferError> {
         let others = self.transfer.stations(recovery.intervals)?;
-        let (_, end) = self.follow(&others, contacts, &mut |_, _| {})?;
+        let (_, end) = self.follow(&others, directions, &mut |_, _| {})?;
         if end.margin > best.margin {
             *best = end;
         }
@@ -359,12 +363,16 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
     }
 
     /// What an ascent does from an open start, with more patience.
-    fn restart(&mut self, contacts: &[Direction], best: &mut Ascent) -> Result<(), TransferError> {
+    fn restart(
+        &mut self,
+        directions: &[Direction],
+        best: &mut Ascent,
+    ) -> Result<(), TransferError> {
         let patient = MonotoneAscent {
             restarts: LAST_RESTARTS,
             ..self.scheme.at_end
         };
-        let end = self.climb_by(&patient, 1.0, self.target, contacts, &mut |_| {})?;
+        let end = self.climb_by(&patient, 1.0, self.target, directions, &mut |_| {})?;
         self.climbs += 1 + LAST_RESTARTS;
         if end.margin > best.margin {
             *best = end;
@@ -405,7 +413,7 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
             Err(AscentError::Constraints(error)) => {
                 self.kept_out = Some(error);
                 Ascent {
-                    contacts: from.to_vec(),
+                    directions: from.to_vec(),
                     start_quality: 0.0,
                     quality: 0.0,
                     margin: f64::NEG_INFINITY,

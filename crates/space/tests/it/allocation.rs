@@ -44,7 +44,7 @@ fn a_longer_climb_allocates_no_more_than_a_shorter_one() {
     let mut objective = Objective::new(&convention, &surface, &Point3::origin());
     let tight = Constraints {
         least_separation: Some(0.02),
-        reach: Some(0.09),
+        largest_separation: Some(0.09),
         caps: vec![Cap {
             axis: Vector3::z_axis(),
             least_cosine: -0.7,

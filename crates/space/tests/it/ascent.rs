@@ -47,7 +47,7 @@ fn no_state_violates_a_limit() {
         let span = |d: &[f64]| d.iter().copied().fold(0.0, f64::max);
         let limits = Constraints {
             least_separation: Some(0.02),
-            reach: Some(span(&distances(&shape, &free.contacts)) - 0.004),
+            largest_separation: Some(span(&distances(&shape, &free.directions)) - 0.004),
             caps: vec![Cap {
                 axis: Vector3::z_axis(),
                 least_cosine: -0.8,
@@ -61,7 +61,7 @@ fn no_state_violates_a_limit() {
             &mut objective(&paper(), &shape),
             &limits,
             |step| {
-                assert!(limits.allow(&shape, step.contacts), "seed {seed}");
+                assert!(limits.allow(&shape, step.directions), "seed {seed}");
                 qualities.push(step.quality);
             },
         );
@@ -73,10 +73,11 @@ fn no_state_violates_a_limit() {
             .unwrap();
         assert_eq!(from, ascent.start_quality);
         assert!(ascent.quality >= from);
-        let slack = limits.reach.unwrap() - span(&distances(&shape, &ascent.contacts));
+        let slack =
+            limits.largest_separation.unwrap() - span(&distances(&shape, &ascent.directions));
         held += usize::from(slack < 1e-4);
     }
-    assert!(held >= 2, "the reach held {held} of 6 ascents back");
+    assert!(held >= 2, "the limit held {held} of 6 ascents back");
 }
 
 #[test]
@@ -92,7 +93,7 @@ fn a_friction_margin_is_kept() {
     let mut states = Vec::new();
     let ascent = MonotoneAscent::default()
         .climb_within(&shape, &start, &mut quality.clone(), &limits, |step| {
-            states.push(step.contacts.to_vec());
+            states.push(step.directions.to_vec());
         })
         .unwrap();
     assert!(ascent.quality > 0.1);
@@ -126,7 +127,7 @@ fn impossible_limits_are_errors() {
     ));
     for value in [-1.0, f64::NAN, f64::INFINITY] {
         let bad = climb(Constraints {
-            reach: Some(value),
+            largest_separation: Some(value),
             ..Constraints::default()
         });
         assert!(matches!(
@@ -215,7 +216,7 @@ fn a_rotated_object_is_climbed_the_same_way() {
     let (a, b) = (climb(&shape, &start), climb(&turned_shape, &turned));
     assert!((a.start_quality - b.start_quality).abs() <= 1e-7);
     assert!((a.quality - b.quality).abs() <= 1e-4, "{a:?} {b:?}");
-    for (p, q) in a.contacts.iter().zip(&b.contacts) {
+    for (p, q) in a.directions.iter().zip(&b.directions) {
         assert!(angle(&(turn * *p), q) <= 1e-2);
     }
 }
@@ -241,10 +242,10 @@ fn a_converged_grasp_is_stationary_and_stays() {
         assert!(ascent.stationarity <= 0.2 * slopes[0], "{slopes:?}");
         let transfer = between(&field, &field, &convention);
         let scheme = Continuation::default();
-        let carried = scheme.carry(&transfer, &ascent.contacts).unwrap();
+        let carried = scheme.carry(&transfer, &ascent.directions).unwrap();
         assert!(carried.quality >= ascent.quality - 1e-9);
         assert!(carried.quality <= ascent.quality + 1e-9);
-        for (p, q) in ascent.contacts.iter().zip(&carried.contacts) {
+        for (p, q) in ascent.directions.iter().zip(&carried.directions) {
             assert!(angle(p, q) <= 1e-9, "moved by {}", angle(p, q));
         }
         assert!(carried.open.is_none());
@@ -278,7 +279,7 @@ fn any_function_is_carried() {
         "{} from {kept}",
         carried.quality
     );
-    assert!((balance(&to, &carried.contacts) - carried.quality).abs() <= 1e-12);
+    assert!((balance(&to, &carried.directions) - carried.quality).abs() <= 1e-12);
     assert!(trace.windows(2).all(|w| w[1].0 >= w[0].0));
     let same_station = trace.windows(2).filter(|w| w[1].0 == w[0].0);
     assert!(same_station.clone().count() > 0);
@@ -293,9 +294,9 @@ fn transfers_keep_limits_on_the_way_and_in_recovery() {
     let convention = paper();
     let transfer = between(&from, &to, &convention);
     let start = closed_start(&from, 3);
-    let limits = |reach: f64| Constraints {
+    let limits = |largest: f64| Constraints {
         least_separation: Some(0.025),
-        reach: Some(reach),
+        largest_separation: Some(largest),
         caps: vec![Cap {
             axis: Vector3::z_axis(),
             least_cosine: -0.9,
@@ -317,7 +318,7 @@ fn transfers_keep_limits_on_the_way_and_in_recovery() {
                 |_| {},
             )
             .unwrap()
-            .contacts;
+            .directions;
         let carry = |limits: &Constraints, trace: &mut dyn FnMut(f64, &space::Step)| {
             scheme.carry_traced(&transfer, &start, limits, trace)
         };
@@ -325,16 +326,16 @@ fn transfers_keep_limits_on_the_way_and_in_recovery() {
         let arrived = carry(&tight, &mut |t, step| {
             for (end, surface) in [&from, &to].into_iter().enumerate() {
                 if t == end as f64 {
-                    assert!(tight.allow(surface, step.contacts));
+                    assert!(tight.allow(surface, step.directions));
                     seen[end] += 1;
                 }
             }
         })
         .unwrap();
         assert!(seen[0] > 0 && seen[1] > 0, "{seen:?}");
-        assert!(tight.allow(&to, &arrived.contacts));
+        assert!(tight.allow(&to, &arrived.directions));
         assert!(arrived.quality > 0.1, "{}", arrived.quality);
-        let dry = objective(&slippery, &to).quality_at(&to, &arrived.contacts);
+        let dry = objective(&slippery, &to).quality_at(&to, &arrived.directions);
         assert!(dry.unwrap() > 0.0);
         let error = carry(
             &Constraints {

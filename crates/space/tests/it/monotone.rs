@@ -30,14 +30,14 @@ proptest! {
         }
         prop_assert_eq!(trace[0], ascent.start_quality);
         prop_assert_eq!(*trace.last().unwrap(), ascent.quality);
-        let again = objective.quality_at(&shape, &ascent.contacts).unwrap();
+        let again = objective.quality_at(&shape, &ascent.directions).unwrap();
         prop_assert!((again - ascent.quality).abs() <= 1e-12);
     }
 }
 
 #[test]
 fn it_beats_a_thousand_fixed_steps_with_a_twentieth_of_the_evaluations() {
-    let (mut ours, mut theirs, mut ours_cost, mut theirs_cost) = (0.0, 0.0, 0, 0);
+    let (mut ours_cost, mut theirs_cost) = (0, 0);
     for seed in 0..6 {
         let shape = lumpy(seed);
         let start = closed_start(&shape, seed);
@@ -48,12 +48,15 @@ fn it_beats_a_thousand_fixed_steps_with_a_twentieth_of_the_evaluations() {
             .unwrap();
         let b = fixed.climb(&shape, &start, &mut objective, |_| {}).unwrap();
         assert!(a.quality >= a.start_quality);
-        ours += a.quality;
-        theirs += b.quality;
+        assert!(
+            a.quality > b.quality,
+            "seed {seed}: {} and {}",
+            a.quality,
+            b.quality
+        );
         ours_cost += a.evaluations;
         theirs_cost += b.evaluations;
     }
-    assert!(ours >= theirs - 6.0 * 1e-3);
     assert!(20 * ours_cost <= theirs_cost);
 }
 
@@ -161,7 +164,7 @@ fn round_cones_are_climbed_as_high_as_pyramids() {
         let (a, b) = (climb(&round), climb(&many));
         // What the pyramids cut off where they ended.
         let whole = Objective::new(&round, &shape, &Point3::origin())
-            .epsilon(&contacts_on(&shape, &b.contacts))
+            .epsilon(&contacts_on(&shape, &b.directions))
             .unwrap();
         let gap = whole.upper - b.quality;
         assert!((-1e-12..0.1).contains(&gap));

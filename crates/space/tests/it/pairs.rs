@@ -34,7 +34,7 @@ fn far_apart(from: &RadialField, to: &RadialField, rule: &Convention) -> [(f64, 
     let naive = transfer.naive(&start).unwrap();
     [ours, paper, naive].map(|end| {
         let again = Objective::new(rule, to, &origins[1])
-            .quality_at(to, &end.contacts)
+            .quality_at(to, &end.directions)
             .unwrap();
         assert!(
             (again - end.quality).abs() <= 1e-9 * (1.0 + again),

@@ -48,7 +48,7 @@ fn the_ascent_climbs_and_its_trace_is_complete() {
     assert_eq!(trace[0], ascent.start_quality);
     assert_eq!(trace[ASCENT.steps], ascent.quality);
     assert_eq!(ascent.evaluations, 1 + 7 * ASCENT.steps);
-    let again = objective.quality_at(&shape, &ascent.contacts).unwrap();
+    let again = objective.quality_at(&shape, &ascent.directions).unwrap();
     assert_eq!(again, ascent.quality);
 }
 
@@ -60,11 +60,11 @@ fn steps_are_no_longer_than_the_rate() {
     ASCENT
         .climb(&shape, &around_the_waist(), &mut objective, |step| {
             if let Some(before) = &before {
-                for (p, q) in before.iter().zip(step.contacts) {
+                for (p, q) in before.iter().zip(step.directions) {
                     assert!(angle(p, q) <= ASCENT.rate + 1e-12);
                 }
             }
-            before = Some(step.contacts.to_vec());
+            before = Some(step.directions.to_vec());
         })
         .unwrap();
 }
@@ -81,7 +81,7 @@ fn an_open_grasp_stays_where_it_is() {
         .climb(&shape, &start, &mut objective, |_| {})
         .unwrap();
     assert_eq!((ascent.start_quality, ascent.quality), (0.0, 0.0));
-    for (p, q) in start.iter().zip(&ascent.contacts) {
+    for (p, q) in start.iter().zip(&ascent.directions) {
         assert!(angle(p, q) <= 1e-12);
     }
 }
@@ -118,7 +118,7 @@ fn a_transfer_visits_every_station_and_ends_on_the_target() {
     assert!(arrived.quality > naive.quality);
     assert_eq!(arrived.start_quality, naive.start_quality);
     let mut objective = Objective::new(&convention, &to, &Point3::origin());
-    let again = objective.quality_at(&to, &arrived.contacts).unwrap();
+    let again = objective.quality_at(&to, &arrived.directions).unwrap();
     assert!((again - arrived.quality).abs() <= 1e-9);
 }
 

@@ -54,7 +54,7 @@ proptest! {
             prop_assert!((r - mixed).abs() <= 1e-14);
             prop_assert!(low <= r && r <= high);
         }
-        for (p, (a, b)) in here.contacts.iter().zip(from.contacts.iter().zip(&to.contacts)) {
+        for (p, (a, b)) in here.directions.iter().zip(from.directions.iter().zip(&to.directions)) {
             prop_assert!((angle(a, p) - t * angle(a, b)).abs() <= 1e-12);
         }
     }
@@ -94,7 +94,7 @@ fn samples_outside_the_space_are_errors_not_shapes() {
 fn a_grasp_has_contacts_on_the_surface_and_inward_normals() {
     let point = random_point(11);
     let grasp = point.grasp(Point3::origin());
-    for (contact, p) in grasp.contacts.iter().zip(&point.contacts) {
+    for (contact, p) in grasp.contacts.iter().zip(&point.directions) {
         assert!((contact.position.coords.norm() - point.surface.radius(p)).abs() <= 1e-15);
         assert!(contact.inward_normal.dot(p) < 0.0);
     }

@@ -80,7 +80,7 @@ fn climb_as_the_paper(
         })?;
     let moved = start
         .iter()
-        .zip(&end.contacts)
+        .zip(&end.directions)
         .map(|(p, q)| sph::direction::angle(p, q));
     Ok(PaperClimb {
         initial: end.start_quality,
@@ -144,14 +144,14 @@ fn draw(
     let mut count = 0;
     let keep = |step: &space::Step| {
         if count % 10 == 0 {
-            states.push(step.contacts.to_vec());
+            states.push(step.directions.to_vec());
         }
         count += 1;
     };
     let end = settings
         .ascent
         .climb(fitted.field(), start, &mut objective, keep)?;
-    states.push(end.contacts);
+    states.push(end.directions);
     Ok(DrawnClimb {
         label: format!("{} Q {:.2} → {:.2}", fitted.id(), climb.initial, climb.last),
         shape: fitted.shape().clone(),

@@ -45,7 +45,7 @@ pub(super) fn figures(bands: &[DrawnBand]) -> Vec<Section> {
             cells: band
                 .samples
                 .iter()
-                .map(|s| grasp_cell(String::new(), &s.surface, &s.contacts))
+                .map(|s| grasp_cell(String::new(), &s.surface, &s.directions))
                 .collect(),
             ..SceneGrid::default()
         })

@@ -76,7 +76,7 @@ fn draw(
         Some(point) => {
             let origin = object.object.frame().cloud_origin();
             space::Objective::new(&run.convention, &point.surface, &origin)
-                .quality_at(&point.surface, &point.contacts)?
+                .quality_at(&point.surface, &point.directions)?
         }
         None => 0.0,
     };

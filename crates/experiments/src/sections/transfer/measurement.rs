@@ -112,7 +112,7 @@ pub(super) fn drawn(
     let shapes = transfer.stations(settings.transfer.intervals)?;
     let mut ends: Vec<(f64, Vec<Direction>, f64)> = Vec::new();
     let keep = |t: f64, step: &space::Step| {
-        let state = (t, step.contacts.to_vec(), step.quality);
+        let state = (t, step.directions.to_vec(), step.quality);
         match ends.last_mut() {
             Some(last) if last.0 == t => *last = state,
             _ => ends.push(state),

@@ -1,17 +1,17 @@
-//! Nearby starts, always the same ones: an even sequence instead of a generator.
+//! Starts of a multistart search: a low-discrepancy sequence around a grasp, the same in every run.
 
 use sph::Direction;
 use std::f64::consts::TAU;
 
 use crate::quality::moved;
 
-/// The k-th of a sequence of contacts around given ones, each moved by at most `spread` radians.
+/// The k-th of a sequence of directions around given ones, each moved by at most `spread` radians.
 ///
 /// The R₂ sequence (powers of the plastic number) fills the discs evenly.
-pub(crate) fn nearby(contacts: &[Direction], k: usize, spread: f64) -> Vec<Direction> {
+pub(crate) fn nearby(directions: &[Direction], k: usize, spread: f64) -> Vec<Direction> {
     const PLASTIC: f64 = 1.324_717_957_244_746;
-    let place = |i: usize, step: f64| (0.5 + (k * contacts.len() + i + 1) as f64 * step).fract();
-    contacts
+    let place = |i: usize, step: f64| (0.5 + (k * directions.len() + i + 1) as f64 * step).fract();
+    directions
         .iter()
         .enumerate()
         .map(|(i, p)| {
@@ -29,10 +29,10 @@ mod tests {
 
     #[test]
     fn starts_are_near_and_differ() {
-        let contacts = even_directions(3);
-        let all: Vec<_> = (0..50).map(|k| nearby(&contacts, k, 0.4)).collect();
+        let directions = even_directions(3);
+        let all: Vec<_> = (0..50).map(|k| nearby(&directions, k, 0.4)).collect();
         for (k, start) in all.iter().enumerate() {
-            for (p, q) in start.iter().zip(&contacts) {
+            for (p, q) in start.iter().zip(&directions) {
                 assert!(angle(p, q) <= 0.4 + 1e-12);
             }
             for other in &all[..k] {
