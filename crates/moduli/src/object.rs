@@ -231,10 +231,10 @@ impl Object {
 
 /// What the user should know about a fit.
 fn warnings(fit: &Fit) -> Vec<String> {
-    let unseen = (fit.star.unseen > GUESSED).then(|| {
+    let unseen = (fit.visibility.unobserved > GUESSED).then(|| {
         format!(
             "no point is seen in {:.0} % of the directions from the mean; the surface there is extrapolated",
-            100.0 * fit.star.unseen
+            100.0 * fit.visibility.unobserved
         )
     });
     let misfit = fit.misfit().map(|misfit| misfit.to_string());

@@ -4,13 +4,13 @@ use nalgebra::Point3;
 use sph::regression::{Gram, Penalty, RegressionError, Samples};
 use sph::rotation::heat_flow;
 
+use crate::hole_filling::fill_holes;
 use crate::misfit::Misfit;
-use crate::outliers::{lonely_points, stray_points};
+use crate::opening::{OpenContainer, Opening};
+use crate::outliers::{isolated_points, outlying_points};
 use crate::point_cloud::{CloudError, PointCloud};
 use crate::radial::{RadialError, RadialShape};
-use crate::star::{Crossing, StarShape, star_shape};
-use crate::unseen::filled_in;
-use crate::vessel::{Opening, Vessel};
+use crate::visibility::{Crossing, Visibility, measure_visibility};
 
 /// How a cloud is turned into a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,18 +24,18 @@ pub struct FitSettings {
 /// Exponent of l(l+1) in the penalty: the spherical thin-plate spline.
 pub const PENALTY_POWER: i32 = 2;
 
-/// [`StarShape::multiple`] above which a cloud is refused. Scans that a radius can describe, with ears
+/// [`Visibility::multiple`] above which a cloud is refused. Scans that a radius can describe, with ears
 /// and handles, stay below 0.05; of the real objects in the tests a drill has 0.12, a mug 0.65 (with
 /// 2 mm of noise still more than 0.2) and a bowl with its thin wall 0.71.
-pub const MOST_MULTIPLE: f64 = 0.2;
+pub const MAX_MULTIPLE: f64 = 0.2;
 
 /// The same for a cloud with an opening, through which the inside of a wall can be seen. A mug's is
 /// above 0.1 with 2 mm of noise from 12,000 points on, with 1 mm from 5,000.
-pub const MOST_MULTIPLE_OPEN: f64 = 0.1;
+pub const MAX_MULTIPLE_OPEN: f64 = 0.1;
 
-/// [`StarShape::unseen`] above which a cloud is refused: a line, a sheet or a handful of points. A
+/// [`Visibility::unobserved`] above which a cloud is refused: a line, a sheet or a handful of points. A
 /// single view of a solid object leaves about a quarter of the directions open.
-pub const MOST_UNSEEN: f64 = 0.4;
+pub const MAX_UNOBSERVED: f64 = 0.4;
 
 /// The λ of the marginal likelihood times this.
 ///
@@ -46,7 +46,7 @@ pub const MOST_UNSEEN: f64 = 0.4;
 /// least squares in 83 of 84 halves of the 14 objects of the tests, where a factor of 1 does in 79.
 /// Against the true surface of modelled objects, which had no part in the choice, 0.5 is up to 12 % above
 /// the best, 0.3 4 to 22 %, 1 up to 3 % (two nearly round ones 41 to 53, 59 to 73 and 21 to 29 %).
-const EASE: f64 = 0.5;
+const LIKELIHOOD_FACTOR: f64 = 0.5;
 /// Fewer points than coefficients resolve degrees up to about this times √N.
 const RESOLVED: f64 = 2.0 / 3.0;
 
@@ -55,13 +55,13 @@ const MOST_OVERSHOOT: f64 = 1.25;
 /// and above this part of the least.
 const LEAST_UNDERSHOOT: f64 = 0.25;
 /// By how much, and how often.
-const RAISE: f64 = 10.0;
-const RAISES: usize = 6;
+const RAISE_FACTOR: f64 = 10.0;
+const MAX_RAISES: usize = 6;
 /// Fits of a cloud with outliers; the last one is kept as it is.
 const ROUNDS: usize = 4;
-/// Stray points with less than this share of the squared residuals do not move the surface: no
+/// Outliers with less than this share of the squared residuals do not move the surface: no
 /// further fit. Normal noise has far less.
-const NOTICEABLE: f64 = 0.1;
+const INFLUENTIAL: f64 = 0.1;
 
 /// Why a cloud has no surface in M^rad.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -74,10 +74,10 @@ pub enum FitError {
     Radial(#[from] RadialError),
     /// No radius over the directions can describe the cloud.
     #[error(
-        "not star-shaped: in {percent:.0} % of the directions the surface is met twice (limit {limit_percent:.0} %), most clearly along ({x:.3}, {y:.3}, {z:.3}) from the mean, at {inner:.4} m and {outer:.4} m, and {unseen_percent:.0} % of the directions hold no point; scan it closed, cut it into parts, or choose another object",
-        percent = 100.0 * star.multiple,
+        "not star-shaped: in {percent:.0} % of the directions the surface is met twice (limit {limit_percent:.0} %), most clearly along ({x:.3}, {y:.3}, {z:.3}) from the mean, at {inner:.4} m and {outer:.4} m, and {unobserved_percent:.0} % of the directions hold no point; scan it closed, cut it into parts, or choose another object",
+        percent = 100.0 * visibility.multiple,
         limit_percent = 100.0 * limit,
-        unseen_percent = 100.0 * star.unseen,
+        unobserved_percent = 100.0 * visibility.unobserved,
         x = worst.direction.x,
         y = worst.direction.y,
         z = worst.direction.z,
@@ -86,39 +86,39 @@ pub enum FitError {
     )]
     NotStarShaped {
         /// The measure, with every direction in question.
-        star: Box<StarShape>,
-        /// The limit of [`StarShape::multiple`] that it exceeds.
+        visibility: Box<Visibility>,
+        /// The limit of [`Visibility::multiple`] that it exceeds.
         limit: f64,
         /// The clearest of them.
         worst: Crossing,
     },
-    /// The cloud is an open vessel whose walls the noise hides.
+    /// The cloud is an open container whose walls the noise hides.
     #[error(
-        "not star-shaped: an open vessel; around ({x:.3}, {y:.3}, {z:.3}) from the mean {percent:.0} % of the directions hold no point, and {why}; scan it closed, cut it into parts, or choose another object",
+        "not star-shaped: an open container; around ({x:.3}, {y:.3}, {z:.3}) from the mean {percent:.0} % of the directions hold no point, and {why}; scan it closed, cut it into parts, or choose another object",
         x = opening.axis.x,
         y = opening.axis.y,
         z = opening.axis.z,
         percent = 100.0 * opening.share,
-        why = match vessel {
-            Vessel::TwoWalls => "the scatter of the points is that of two walls",
-            Vessel::SeenFromAllSides => "the points are spread as evenly as if seen from all sides",
+        why = match container {
+            OpenContainer::TwoWalls => "the scatter of the points is that of two walls",
+            OpenContainer::EvenDensity => "the points are spread as evenly as if seen from all sides",
         },
     )]
-    OpenVessel {
-        /// Its mouth.
+    OpenContainer {
+        /// Its opening.
         opening: Opening,
         /// What tells it from a solid seen from one side.
-        vessel: Vessel,
+        container: OpenContainer,
     },
     /// Most of the surface was not seen.
     #[error(
         "{percent:.0} % of the directions from the mean hold no point (limit {limit_percent:.0} %): the points surround nothing; a scan from more sides is needed",
-        percent = 100.0 * unseen,
-        limit_percent = 100.0 * MOST_UNSEEN,
+        percent = 100.0 * unobserved,
+        limit_percent = 100.0 * MAX_UNOBSERVED,
     )]
-    Unseen {
+    Unobserved {
         /// Share of the directions without a point.
-        unseen: f64,
+        unobserved: f64,
     },
     /// The surface leaves the data by far, and no penalty tried keeps it close.
     #[error(
@@ -164,7 +164,7 @@ pub struct Fit {
     /// Condition number of the penalised regression.
     pub condition: f64,
     /// How close the cloud is to star-shaped, and where it has holes.
-    pub star: StarShape,
+    pub visibility: Visibility,
     /// Points not used, as indices into the cloud: far from the surface and from other points.
     pub outliers: Vec<usize>,
 }
@@ -200,15 +200,20 @@ impl Fit {
             condition: self.condition,
         };
         let residuals = view.residuals(&solved.shape);
-        Ok(solved.report(&view, &residuals, self.star.clone(), self.outliers.clone()))
+        Ok(solved.report(
+            &view,
+            &residuals,
+            self.visibility.clone(),
+            self.outliers.clone(),
+        ))
     }
 }
 
 /// Fits r(p) = Σ β Y to the cloud seen from its mean (Sec. III-B and IV-A of the paper), with a
 /// penalty, and proves the result positive.
 ///
-/// A cloud whose surface is met twice in more than [`MOST_MULTIPLE`] of the directions is refused, and
-/// one that leaves more than [`MOST_UNSEEN`] of them open, and an open [`Vessel`].
+/// A cloud whose surface is met twice in more than [`MAX_MULTIPLE`] of the directions is refused, and
+/// one that leaves more than [`MAX_UNOBSERVED`] of them open, and an open container, see [`OpenContainer`].
 /// Points that are both far from the surface and alone are outliers: they lose their weight and
 /// the fit is repeated, at most four times; a cloud without them is fitted once. Directions in
 /// which nothing was seen take part with a membrane spanned from what was seen around them. A λ
@@ -219,59 +224,61 @@ pub fn fit(cloud: &PointCloud, settings: &FitSettings) -> Result<Fit, FitError> 
     let mut round = 0;
     loop {
         let view = View::new(cloud, &outliers)?;
-        let star = star_shape(&view.samples);
-        if let Some(error) = refusal(&star) {
-            // A swarm of stray points looks like a second sheet: look again without it.
-            let stray = lonely_points(&view.points);
-            if round > 0 || stray.is_empty() {
+        let visibility = measure_visibility(&view.samples);
+        if let Some(error) = refusal(&visibility) {
+            // A swarm of outliers looks like a second sheet: look again without it.
+            let outlying = isolated_points(&view.points);
+            if round > 0 || outlying.is_empty() {
                 return Err(error);
             }
-            outliers.extend(stray.iter().map(|i| view.index[*i]));
+            outliers.extend(outlying.iter().map(|i| view.index[*i]));
             round += 1;
             continue;
         }
         round += 1;
-        let solved = view.solve(settings, &star)?;
+        let solved = view.solve(settings, &visibility)?;
         let residuals = view.residuals(&solved.shape);
-        let stray = stray_points(&view.points, &residuals);
-        if round >= ROUNDS || !noticeable(&stray, &residuals) {
+        let outlying = outlying_points(&view.points, &residuals);
+        if round >= ROUNDS || !influential(&outlying, &residuals) {
             outliers.sort_unstable();
-            let fit = solved.report(&view, &residuals, star, outliers);
+            let fit = solved.report(&view, &residuals, visibility, outliers);
             return match fit.misfit().filter(Misfit::is_refused) {
                 Some(misfit) => Err(FitError::Misfit(misfit)),
                 None => Ok(fit),
             };
         }
-        outliers.extend(stray.iter().map(|i| view.index[*i]));
+        outliers.extend(outlying.iter().map(|i| view.index[*i]));
     }
 }
 
 /// Why a cloud is the graph of no radius, if it is not.
-fn refusal(star: &StarShape) -> Option<FitError> {
-    let limit = star.opening.map_or(MOST_MULTIPLE, |_| MOST_MULTIPLE_OPEN);
+fn refusal(visibility: &Visibility) -> Option<FitError> {
+    let limit = visibility
+        .opening
+        .map_or(MAX_MULTIPLE, |_| MAX_MULTIPLE_OPEN);
     // A share above the limit has crossings; the clearest is the first.
-    if star.multiple > limit {
+    if visibility.multiple > limit {
         return Some(FitError::NotStarShaped {
-            worst: star.crossings[0],
-            star: Box::new(star.clone()),
+            worst: visibility.crossings[0],
+            visibility: Box::new(visibility.clone()),
             limit,
         });
     }
-    if let Some(opening) = star.opening
-        && let Some(vessel) = opening.vessel
+    if let Some(opening) = visibility.opening
+        && let Some(container) = opening.container
     {
-        return Some(FitError::OpenVessel { opening, vessel });
+        return Some(FitError::OpenContainer { opening, container });
     }
-    (star.unseen > MOST_UNSEEN).then_some(FitError::Unseen {
-        unseen: star.unseen,
+    (visibility.unobserved > MAX_UNOBSERVED).then_some(FitError::Unobserved {
+        unobserved: visibility.unobserved,
     })
 }
 
-/// Whether stray points have pulled the surface.
-fn noticeable(stray: &[usize], residuals: &[f64]) -> bool {
-    let theirs: f64 = stray.iter().map(|i| residuals[*i].powi(2)).sum();
+/// Whether outliers have pulled the surface.
+fn influential(outlying: &[usize], residuals: &[f64]) -> bool {
+    let theirs: f64 = outlying.iter().map(|i| residuals[*i].powi(2)).sum();
     let all: f64 = residuals.iter().map(|e| e * e).sum();
-    theirs > NOTICEABLE * all
+    theirs > INFLUENTIAL * all
 }
 
 /// The points in use, seen from their mean.
@@ -311,8 +318,8 @@ impl View {
         })
     }
 
-    fn solve(&self, settings: &FitSettings, star: &StarShape) -> Result<Solved, FitError> {
-        let (directions, values) = filled_in(&self.samples, &star.unseen_directions);
+    fn solve(&self, settings: &FitSettings, visibility: &Visibility) -> Result<Solved, FitError> {
+        let (directions, values) = fill_holes(&self.samples, &visibility.unobserved_directions);
         let samples = Samples {
             directions: &directions,
             values: &values,
@@ -326,7 +333,7 @@ impl View {
             },
             None => choose_penalty(&gram, values.len(), settings.degree)?,
         };
-        let mut raises = if chosen { RAISES } else { 0 };
+        let mut raises = if chosen { MAX_RAISES } else { 0 };
         loop {
             let solution = gram.solve(samples, penalty)?;
             let shape = RadialShape::new(solution.coefficients).map_err(FitError::from);
@@ -341,7 +348,7 @@ impl View {
                 Err(error) if raises == 0 => return Err(error),
                 Err(_) => {
                     raises -= 1;
-                    penalty.lambda *= RAISE;
+                    penalty.lambda *= RAISE_FACTOR;
                 }
             }
         }
@@ -380,7 +387,7 @@ pub(crate) fn choose_penalty(
     degree: usize,
 ) -> Result<Penalty, RegressionError> {
     let mut penalty = gram.choose_penalty(PENALTY_POWER)?;
-    penalty.lambda *= EASE;
+    penalty.lambda *= LIKELIHOOD_FACTOR;
     if samples < (degree + 1) * (degree + 1) {
         let n = samples as f64;
         let l = (RESOLVED * n.sqrt()).max(1.0);
@@ -391,7 +398,13 @@ pub(crate) fn choose_penalty(
 }
 
 impl Solved {
-    fn report(self, view: &View, residuals: &[f64], star: StarShape, outliers: Vec<usize>) -> Fit {
+    fn report(
+        self,
+        view: &View,
+        residuals: &[f64],
+        visibility: Visibility,
+        outliers: Vec<usize>,
+    ) -> Fit {
         let squares: f64 = residuals.iter().map(|e| e * e).sum();
         Fit {
             shape: self.shape,
@@ -400,7 +413,7 @@ impl Solved {
             rms: (squares / residuals.len() as f64).sqrt(),
             max_abs: residuals.iter().fold(0.0, |worst, e| e.abs().max(worst)),
             condition: self.condition,
-            star,
+            visibility,
             outliers,
         }
     }

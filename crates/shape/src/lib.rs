@@ -25,38 +25,38 @@
 //! ```
 
 pub mod algebra;
-mod cells;
 pub mod embedding;
 pub mod fit;
+mod hole_filling;
 mod immersion;
 pub mod io;
 pub mod mass;
 mod misfit;
 pub mod noise;
 mod normals;
+pub mod opening;
 mod outliers;
 mod patch;
 pub mod point_cloud;
 pub mod radial;
 mod radial_field;
 mod rotation_field;
+mod sphere_partition;
 mod spherical;
 mod spherical_fit;
-pub mod star;
 pub mod surface;
 pub mod triangle_mesh;
-mod unseen;
-pub mod vessel;
+pub mod visibility;
 
 pub use fit::{Fit, FitError, FitSettings};
 pub use immersion::{Immersion, SphericalError};
 pub use misfit::Misfit;
+pub use opening::{OpenContainer, Opening};
 pub use point_cloud::{CloudError, PointCloud};
 pub use radial::{RadialError, RadialShape};
 pub use radial_field::RadialField;
 pub use spherical::SphericalShape;
 pub use spherical_fit::{SphericalFit, SphericalFitError, fit_spherical};
-pub use star::{Crossing, StarShape, star_shape};
 pub use surface::{Differential, Surface};
 pub use triangle_mesh::TriangleMesh;
-pub use vessel::{Opening, Vessel};
+pub use visibility::{Crossing, Visibility, measure_visibility};

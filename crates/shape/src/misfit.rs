@@ -10,7 +10,7 @@ const REFUSED_RMS: f64 = 0.5;
 /// 0.02.
 const DOUBTFUL_RMS: f64 = 0.05;
 /// A largest residual above this share of the mean radius is doubtful. Scans with a table, a second
-/// object or stray points in them have 0.7 and more, the objects of the tests that a radius describes
+/// object or outliers in them have 0.7 and more, the objects of the tests that a radius describes
 /// 0.3 and less.
 const DOUBTFUL_MAX: f64 = 0.5;
 
@@ -54,7 +54,7 @@ impl fmt::Display for Misfit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "the surface does not explain all points: residuals of {:.1} mm (root mean square) and up to {:.1} mm at a mean radius of {:.1} mm; remove a table, other objects and stray points from the cloud, or check whether every direction from its mean meets the object once",
+            "the surface does not explain all points: residuals of {:.1} mm (root mean square) and up to {:.1} mm at a mean radius of {:.1} mm; remove a table, other objects and outliers from the cloud, or check whether every direction from its mean meets the object once",
             1e3 * self.rms,
             1e3 * self.max_abs,
             1e3 * self.radius

@@ -12,7 +12,7 @@ const NORMAL: f64 = 1.4826;
 const REACH: f64 = 2.0;
 /// A flat surface has 13 points within reach of one of its points; a point with fewer others than
 /// this is alone.
-const COMPANY: usize = 2;
+const MIN_NEIGHBOURS: usize = 2;
 
 /// Indices of the points with a large residual and hardly any neighbours.
 ///
@@ -20,20 +20,20 @@ const COMPANY: usize = 2;
 /// median absolute residual, and 0 beyond it, but only for points that are alone in space. What a
 /// radius cannot describe (an ear, a handle) is far from the surface too, but in company; it keeps
 /// its weight, so that clouds without outliers lose nothing. Costs a few operations a point.
-pub(crate) fn stray_points(points: &[Point3<f64>], residuals: &[f64]) -> Vec<usize> {
+pub(crate) fn outlying_points(points: &[Point3<f64>], residuals: &[f64]) -> Vec<usize> {
     let limit = FAR * NORMAL * median_size(residuals);
     let far: Vec<usize> = (0..points.len())
         .filter(|i| residuals[*i].abs() > limit)
         .collect();
-    lonely(points, far)
+    isolated(points, far)
 }
 
 /// Indices of the points with hardly any neighbours, wherever the surface is.
-pub(crate) fn lonely_points(points: &[Point3<f64>]) -> Vec<usize> {
-    lonely(points, (0..points.len()).collect())
+pub(crate) fn isolated_points(points: &[Point3<f64>]) -> Vec<usize> {
+    isolated(points, (0..points.len()).collect())
 }
 
-fn lonely(points: &[Point3<f64>], suspects: Vec<usize>) -> Vec<usize> {
+fn isolated(points: &[Point3<f64>], suspects: Vec<usize>) -> Vec<usize> {
     if suspects.is_empty() {
         return suspects;
     }
@@ -41,19 +41,19 @@ fn lonely(points: &[Point3<f64>], suspects: Vec<usize>) -> Vec<usize> {
     if !(reach > 0.0 && reach.is_finite()) {
         return Vec::new();
     }
-    let boxes = Boxes::new(points, reach);
-    let alone = |i: &usize| boxes.others_near(&points[*i], COMPANY) < COMPANY;
+    let boxes = VoxelGrid::new(points, reach);
+    let alone = |i: &usize| boxes.others_near(&points[*i], MIN_NEIGHBOURS) < MIN_NEIGHBOURS;
     suspects.into_iter().filter(alone).collect()
 }
 
 /// Points by the cube they lie in.
-struct Boxes<'a> {
+struct VoxelGrid<'a> {
     points: &'a [Point3<f64>],
     side: f64,
     members: HashMap<[i64; 3], Vec<usize>>,
 }
 
-impl<'a> Boxes<'a> {
+impl<'a> VoxelGrid<'a> {
     fn new(points: &'a [Point3<f64>], side: f64) -> Self {
         let mut boxes = Self {
             points,
@@ -113,7 +113,7 @@ mod tests {
     use sph::direction::even_directions;
 
     #[test]
-    fn a_lone_point_is_stray_and_a_patch_is_not() {
+    fn an_isolated_point_is_an_outlier_and_a_patch_is_not() {
         let directions = even_directions(4000);
         let mut residuals: Vec<f64> = (0..4000).map(|i| 1e-4 * (i as f64).sin()).collect();
         let mut points: Vec<Point3<f64>> = directions
@@ -127,16 +127,16 @@ mod tests {
         }
         points[2000] *= 2.0;
         residuals[2000] = -0.05;
-        assert_eq!(stray_points(&points, &residuals), [2000]);
-        assert_eq!(lonely_points(&points), [2000]);
+        assert_eq!(outlying_points(&points, &residuals), [2000]);
+        assert_eq!(isolated_points(&points), [2000]);
     }
 
     #[test]
     fn degenerate_points_are_no_trouble() {
-        assert!(stray_points(&[], &[]).is_empty());
+        assert!(outlying_points(&[], &[]).is_empty());
         let points = vec![Point3::new(1.0, 1.0, 1.0); 9];
         let mut residuals = vec![0.0; 9];
         residuals[4] = 1.0;
-        assert!(stray_points(&points, &residuals).is_empty());
+        assert!(outlying_points(&points, &residuals).is_empty());
     }
 }

@@ -4,8 +4,8 @@ use nalgebra::{SMatrix, SVector, UnitVector3, Vector3};
 use sph::Direction;
 use sph::direction::tangent_frame;
 
-use crate::cells::Cells;
 use crate::point_cloud::RadialSamples;
+use crate::sphere_partition::SpherePartition;
 
 /// Two sheets of points closer than this share of the radius count as one.
 pub(crate) const LEAST_GAP: f64 = 0.01;
@@ -55,7 +55,7 @@ impl Patch {
 }
 
 /// Indices of the samples in every cell.
-pub(crate) fn members(cells: &Cells, directions: &[Direction]) -> Vec<Vec<usize>> {
+pub(crate) fn members(cells: &SpherePartition, directions: &[Direction]) -> Vec<Vec<usize>> {
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); cells.count()];
     for (i, p) in directions.iter().enumerate() {
         members[cells.index(p)].push(i);

@@ -2,10 +2,10 @@
 
 mod common;
 mod loading;
+mod open_containers;
 mod outliers;
 mod properties;
 mod real_scans;
 mod smoothing;
 mod spherical;
 mod true_surfaces;
-mod vessels;

@@ -16,12 +16,12 @@ const SPOUT: (f64, f64) = (0.003, 0.02);
 enum Kind {
     Ball,
     Spout,
-    Stray,
+    Outlier,
 }
 
-/// A ball with a thin spout along x, even by area, with 0.2 mm of noise and a share of stray points in a
+/// A ball with a thin spout along x, even by area, with 0.2 mm of noise and a share of outliers in a
 /// box of twice its size.
-fn jug(count: usize, strays: f64) -> Vec<(Kind, Point3<f64>)> {
+fn jug(count: usize, share_of_outliers: f64) -> Vec<(Kind, Point3<f64>)> {
     let mut rng = ChaCha8Rng::seed_from_u64(21);
     let noise = Normal::new(0.0, 2e-4).unwrap();
     let (width, length) = SPOUT;
@@ -31,9 +31,9 @@ fn jug(count: usize, strays: f64) -> Vec<(Kind, Point3<f64>)> {
     );
     let point = |_| {
         let at = |rng: &mut ChaCha8Rng| 2.0 * rng.random::<f64>() - 1.0;
-        if rng.random::<f64>() < strays {
+        if rng.random::<f64>() < share_of_outliers {
             let place = Vector3::from_fn(|_, _| 2.0 * RADIUS * at(&mut rng));
-            return (Kind::Stray, Point3::from(place));
+            return (Kind::Outlier, Point3::from(place));
         }
         let (sin, cos) = (std::f64::consts::PI * at(&mut rng)).sin_cos();
         let on_spout = rng.random::<f64>() * (areas.0 + areas.1) < areas.1;
@@ -56,9 +56,9 @@ fn jug(count: usize, strays: f64) -> Vec<(Kind, Point3<f64>)> {
 #[test]
 fn a_thin_spout_stays_and_scattered_points_go() {
     for count in [25_000, 4_000] {
-        for strays in [0.0, 0.05, 0.2] {
-            let name = format!("{count} points, {strays} astray");
-            let points = jug(count, strays);
+        for share_of_outliers in [0.0, 0.05, 0.2] {
+            let name = format!("{count} points, share of outliers {share_of_outliers}");
+            let points = jug(count, share_of_outliers);
             let cloud = PointCloud::new(points.iter().map(|p| p.1).collect()).unwrap();
             let settings = FitSettings {
                 degree: 25,
@@ -80,11 +80,14 @@ fn a_thin_spout_stays_and_scattered_points_go() {
             let ball = share(&|kind, _| kind == Kind::Ball);
             assert!(ball <= 1e-3, "{name}: {ball} of the ball");
             // A clean cloud is fitted once, and loses nothing.
-            assert!(strays > 0.0 || fit.outliers.is_empty(), "{name}");
-            // Nearer than the points are to each other a stray one is in company.
+            assert!(share_of_outliers > 0.0 || fit.outliers.is_empty(), "{name}");
+            // Nearer than the points are to each other an outlier has neighbours too.
             let far = |p: &Point3<f64>| (p.coords.norm() - RADIUS).abs() > 0.01;
-            let found = share(&|kind, p| kind == Kind::Stray && far(p));
-            assert!(strays == 0.0 || found >= 0.9, "{name}: {found} found");
+            let found = share(&|kind, p| kind == Kind::Outlier && far(p));
+            assert!(
+                share_of_outliers == 0.0 || found >= 0.9,
+                "{name}: {found} found"
+            );
             // Away from the spout the surface is the ball.
             let away = points
                 .iter()

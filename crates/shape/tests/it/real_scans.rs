@@ -6,7 +6,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use shape::fit::{Fit, FitError, fit};
 use shape::point_cloud::RadialSamples;
-use shape::{PointCloud, Surface, star_shape};
+use shape::{PointCloud, Surface, measure_visibility};
 use sph::direction::even_directions;
 use sph::grid::RingGrid;
 use sph::regression::{Penalty, Samples, gram};
@@ -101,16 +101,26 @@ fn main_objects_predict_the_half_that_was_held_out() {
 
 #[test]
 #[ignore = "needs the scans of MODULI_DATA"]
-fn the_measure_tells_open_vessels_from_scans() {
+fn the_measure_tells_open_containers_from_scans() {
     for entry in index() {
         let cloud = cloud(&entry.name);
-        let star = star_shape(&cloud.seen_from(&cloud.mean()));
+        let visibility = measure_visibility(&cloud.seen_from(&cloud.mean()));
         let open = ["mug", "bowl"].contains(&entry.name.as_str());
         if open {
-            assert!(star.multiple >= 0.6, "{}: {}", entry.name, star.multiple);
-            assert!(star.unseen >= 0.05 && !star.crossings.is_empty());
+            assert!(
+                visibility.multiple >= 0.6,
+                "{}: {}",
+                entry.name,
+                visibility.multiple
+            );
+            assert!(visibility.unobserved >= 0.05 && !visibility.crossings.is_empty());
         } else {
-            assert!(star.multiple <= 0.15, "{}: {}", entry.name, star.multiple);
+            assert!(
+                visibility.multiple <= 0.15,
+                "{}: {}",
+                entry.name,
+                visibility.multiple
+            );
         }
     }
 }
@@ -125,10 +135,15 @@ fn hard_objects_are_certified_or_refused() {
             ("mug" | "bowl", Err(error)) => {
                 let text = error.to_string();
                 assert!(text.contains("not star-shaped"), "{text}");
-                let FitError::NotStarShaped { star, worst, limit } = error else {
+                let FitError::NotStarShaped {
+                    visibility,
+                    worst,
+                    limit,
+                } = error
+                else {
                     panic!("{name}: {text}");
                 };
-                assert!(worst.inner < worst.outer && star.multiple > limit);
+                assert!(worst.inner < worst.outer && visibility.multiple > limit);
             }
             ("mug" | "bowl", other) => panic!("{name}: {other:?}"),
             (_, Ok(fit)) => {
@@ -255,7 +270,11 @@ fn four_hundred_points_of_a_ball_make_a_ball() {
 fn one_view_of_a_bottle_stays_close_to_the_whole_bottle() {
     let (view, whole) = (cloud("mustard_bottle_partial"), cloud("mustard_bottle"));
     let fit = fit(&view, &SETTINGS).unwrap();
-    assert!(fit.star.unseen >= 0.1, "{}", fit.star.unseen);
+    assert!(
+        fit.visibility.unobserved >= 0.1,
+        "{}",
+        fit.visibility.unobserved
+    );
     let samples = whole.seen_from(&fit.centre_in_cloud);
     let error = rms(fit.shape.coefficients(), &samples);
     let largest = samples.radii.iter().fold(0.0_f64, |a, b| a.max(*b));

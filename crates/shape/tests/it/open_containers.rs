@@ -1,4 +1,4 @@
-//! Open vessels are refused also where noise hides their walls; solids are not taken for vessels.
+//! Open containers are refused also where noise hides their walls; solids are not taken for containers.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,20 +6,20 @@ use crate::common::{cloud, index, noisy, thinned};
 use nalgebra::Point3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use shape::fit::{FitError, FitSettings, MOST_MULTIPLE_OPEN, fit};
-use shape::{PointCloud, Vessel, star_shape};
+use shape::fit::{FitError, FitSettings, MAX_MULTIPLE_OPEN, fit};
+use shape::{OpenContainer, PointCloud, measure_visibility};
 
 /// Standard deviations of the noise, metres.
 const NOISE: [f64; 4] = [0.0, 5e-4, 1e-3, 2e-3];
 
-/// Why the fit of a vessel refuses it; refusing comes before any regression.
+/// Why the fit of a container refuses it; refusing comes before any regression.
 fn refusal(name: &str, cloud: &PointCloud) -> FitError {
     let settings = FitSettings {
         degree: 10,
         lambda: None,
     };
     match fit(cloud, &settings) {
-        Err(error @ (FitError::NotStarShaped { .. } | FitError::OpenVessel { .. })) => error,
+        Err(error @ (FitError::NotStarShaped { .. } | FitError::OpenContainer { .. })) => error,
         other => panic!("{name}: {other:?}"),
     }
 }
@@ -140,25 +140,29 @@ fn shallow_bowls_are_seen_whatever_their_wall() {
         }
     }
     let hidden = noisy(&round_bowl(0.08, -0.3, 1e-3, 25_000), 2e-3);
-    let star = star_shape(&hidden.seen_from(&hidden.mean()));
-    let opening = star.opening.expect("open at the top");
-    assert_eq!(opening.vessel, Some(Vessel::SeenFromAllSides));
+    let visibility = measure_visibility(&hidden.seen_from(&hidden.mean()));
+    let opening = visibility.opening.expect("open at the top");
+    assert_eq!(opening.container, Some(OpenContainer::EvenDensity));
     assert!(opening.axis.z > 0.9 && opening.share > 0.2, "{opening:?}");
 }
 
 #[test]
 #[ignore = "needs the scans of MODULI_DATA"]
-fn solids_are_no_vessels_under_noise() {
+fn solids_are_no_containers_under_noise() {
     for entry in index().iter().filter(|e| e.class == "main") {
         let whole = cloud(&entry.name);
         for sigma in [0.0, 5e-4, 2e-3] {
             let whole = noisy(&whole, sigma);
             for count in [25_000, 5_000] {
                 let cloud = thinned(&whole, count);
-                let star = star_shape(&cloud.seen_from(&cloud.mean()));
+                let visibility = measure_visibility(&cloud.seen_from(&cloud.mean()));
                 let name = format!("{} {sigma} {count}", entry.name);
-                assert!(star.multiple <= MOST_MULTIPLE_OPEN, "{name}");
-                assert!(star.opening.is_none(), "{name}: {:?}", star.opening);
+                assert!(visibility.multiple <= MAX_MULTIPLE_OPEN, "{name}");
+                assert!(
+                    visibility.opening.is_none(),
+                    "{name}: {:?}",
+                    visibility.opening
+                );
             }
         }
     }
@@ -166,7 +170,7 @@ fn solids_are_no_vessels_under_noise() {
 
 #[test]
 #[ignore = "needs the scans of MODULI_DATA"]
-fn an_unseen_bottom_is_no_mouth() {
+fn an_unobserved_bottom_is_no_container() {
     for name in ["condensed_milk_can", "toy_cat", "foam_brick"] {
         let cloud = cloud(name);
         let low = cloud.points().iter().map(|p| p.z).fold(f64::MAX, f64::min);
@@ -175,10 +179,12 @@ fn an_unseen_bottom_is_no_mouth() {
         let seen = PointCloud::new(seen.collect()).unwrap();
         for sigma in NOISE {
             let noisy = noisy(&seen, sigma);
-            let star = star_shape(&noisy.seen_from(&noisy.mean()));
-            let opening = star.opening.unwrap_or_else(|| panic!("{name} {sigma}"));
-            assert_eq!(opening.vessel, None, "{name} {sigma}");
-            assert!(star.multiple <= MOST_MULTIPLE_OPEN, "{name} {sigma}");
+            let visibility = measure_visibility(&noisy.seen_from(&noisy.mean()));
+            let opening = visibility
+                .opening
+                .unwrap_or_else(|| panic!("{name} {sigma}"));
+            assert_eq!(opening.container, None, "{name} {sigma}");
+            assert!(visibility.multiple <= MAX_MULTIPLE_OPEN, "{name} {sigma}");
             assert!(opening.axis.z < -0.9, "{name} {sigma}: {opening:?}");
         }
     }
@@ -204,12 +210,16 @@ fn one_view_of_a_ball_is_no_bowl() {
     };
     let (seen, even) = (half(true), half(false));
     for sigma in NOISE {
-        let vessel = |cloud: &PointCloud| {
+        let container = |cloud: &PointCloud| {
             let cloud = noisy(cloud, sigma);
-            let star = star_shape(&cloud.seen_from(&cloud.mean()));
-            star.opening.expect("half is open").vessel
+            let visibility = measure_visibility(&cloud.seen_from(&cloud.mean()));
+            visibility.opening.expect("half is open").container
         };
-        assert_eq!(vessel(&seen), None, "{sigma}");
-        assert_eq!(vessel(&even), Some(Vessel::SeenFromAllSides), "{sigma}");
+        assert_eq!(container(&seen), None, "{sigma}");
+        assert_eq!(
+            container(&even),
+            Some(OpenContainer::EvenDensity),
+            "{sigma}"
+        );
     }
 }

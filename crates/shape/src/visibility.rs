@@ -2,10 +2,10 @@
 
 use sph::Direction;
 
-use crate::cells::Cells;
+use crate::opening::{Opening, opening};
 use crate::patch::{LEAST_GAP, Patch, members};
 use crate::point_cloud::RadialSamples;
-use crate::vessel::{Opening, opening};
+use crate::sphere_partition::SpherePartition;
 
 /// Cells in which two sheets are looked for: small enough for a quadratic to follow the surface.
 const CELLS: usize = 150;
@@ -16,7 +16,7 @@ const LEAST_FILLED: f64 = 0.25;
 /// Share of the scatter that two sheets must explain. Two halves of a normal distribution explain
 /// 0.64 of it, of a uniform one 0.75.
 const TWO_SHEETS: f64 = 0.8;
-/// Each sheet holds at least this share of a cell's points: stray points make no sheet.
+/// Each sheet holds at least this share of a cell's points: outliers make no sheet.
 const LEAST_SHARE: f64 = 0.15;
 
 /// A direction along which the surface is met at two radii.
@@ -32,15 +32,15 @@ pub struct Crossing {
 
 /// How far a cloud is from the graph of one radius over the sphere.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StarShape {
+pub struct Visibility {
     /// Share of the directions that hold enough points in which two sheets are met; 0 to 1.
     pub multiple: f64,
     /// Share of the sphere in which there is no point; 0 to 1.
-    pub unseen: f64,
+    pub unobserved: f64,
     /// Where two sheets are met, widest gap relative to the radius first.
     pub crossings: Vec<Crossing>,
     /// Centres of the cells without points.
-    pub unseen_directions: Vec<Direction>,
+    pub unobserved_directions: Vec<Direction>,
     /// The widest opening, if there is one.
     pub opening: Option<Opening>,
 }
@@ -51,10 +51,10 @@ pub struct StarShape {
 /// quadratic over the cell) and split in two where the split explains most of what is left. Noise has
 /// one heap and is explained badly, two walls have two heaps; a steep wall is no crossing, since the
 /// quadratic takes its slope. Costs about 100 flops a point, and 600 where there is an opening.
-pub fn star_shape(samples: &RadialSamples) -> StarShape {
+pub fn measure_visibility(samples: &RadialSamples) -> Visibility {
     let count = samples.radii.len();
     let filled = (count / CELLS).clamp(POINTS_PER_CELL.0, POINTS_PER_CELL.1);
-    let mut members = members(&Cells::new(count / filled), &samples.directions);
+    let mut members = members(&SpherePartition::new(count / filled), &samples.directions);
     members.retain(|m| m.len() as f64 >= LEAST_FILLED * filled as f64);
     let mut crossings: Vec<Crossing> = members
         .iter()
@@ -62,21 +62,21 @@ pub fn star_shape(samples: &RadialSamples) -> StarShape {
         .collect();
     let gap = |c: &Crossing| (c.outer - c.inner) / c.outer;
     crossings.sort_by(|a, b| gap(b).total_cmp(&gap(a)));
-    let views = Cells::for_views(count);
+    let views = SpherePartition::for_views(count);
     let mut seen = vec![false; views.count()];
     for p in &samples.directions {
         seen[views.index(p)] = true;
     }
-    let unseen_directions: Vec<Direction> = (0..views.count())
+    let unobserved_directions: Vec<Direction> = (0..views.count())
         .filter(|cell| !seen[*cell])
         .map(|cell| views.centre(cell))
         .collect();
-    StarShape {
+    Visibility {
         multiple: crossings.len() as f64 / members.len().max(1) as f64,
-        unseen: unseen_directions.len() as f64 / views.count() as f64,
+        unobserved: unobserved_directions.len() as f64 / views.count() as f64,
         crossings,
         opening: opening(samples),
-        unseen_directions,
+        unobserved_directions,
     }
 }
 
@@ -141,16 +141,16 @@ mod tests {
                 .collect(),
             directions: directions.clone(),
         };
-        let one = star_shape(&wall(0.0));
-        assert!(one.multiple <= 0.01 && one.unseen == 0.0);
-        let two = star_shape(&wall(0.01));
+        let one = measure_visibility(&wall(0.0));
+        assert!(one.multiple <= 0.01 && one.unobserved == 0.0);
+        let two = measure_visibility(&wall(0.01));
         assert!(two.multiple >= 0.95, "{}", two.multiple);
         let first = two.crossings[0];
         assert!((first.inner - 0.05).abs() <= 1e-3 && (first.outer - 0.06).abs() <= 1e-3);
     }
 
     #[test]
-    fn the_unseen_half_is_named() {
+    fn the_unobserved_half_is_named() {
         let directions: Vec<Direction> = even_directions(20_000)
             .into_iter()
             .filter(|p| p.x > 0.0)
@@ -159,8 +159,8 @@ mod tests {
             radii: vec![0.05; directions.len()],
             directions,
         };
-        let half = star_shape(&samples);
-        assert!((half.unseen - 0.5).abs() <= 0.12 && half.multiple == 0.0);
-        assert!(half.unseen_directions.iter().all(|p| p.x < 0.1));
+        let half = measure_visibility(&samples);
+        assert!((half.unobserved - 0.5).abs() <= 0.12 && half.multiple == 0.0);
+        assert!(half.unobserved_directions.iter().all(|p| p.x < 0.1));
     }
 }

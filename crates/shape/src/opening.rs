@@ -1,21 +1,21 @@
-//! Is a cloud with an opening a vessel, or a solid whose far side was not seen?
+//! Is a cloud with an opening a container, or a solid whose far side was not seen?
 //!
 //! Where noise is as large as a wall is thick, no direction shows two sheets any more, and a cup looks
 //! like a solid with a part missing. Two things still tell them apart: the shape of the scatter, which
 //! two walls make flatter than a normal distribution, and how the points are spread. What nothing tells
-//! apart is a deep vessel, its wall thinner than some 1.5 deviations of the noise, and a solid that
-//! stands on an unseen side.
+//! apart is a deep container, its wall thinner than some 1.5 deviations of the noise, and a solid that
+//! stands on an unobserved side.
 
 use nalgebra::Vector3;
 use sph::Direction;
 use sph::direction::{even_directions, retract, tangent_frame};
 
-use crate::cells::Cells;
 use crate::patch::{LEAST_GAP, Patch, members};
 use crate::point_cloud::RadialSamples;
+use crate::sphere_partition::SpherePartition;
 
 /// Openings of a smaller share of the sphere than this are holes of a scan.
-const LEAST_OPENING: f64 = 0.05;
+const MIN_OPENING: f64 = 0.05;
 /// An opening of a larger share than this is wider than what a scan from all sides leaves below an
 /// object on a table, unless that is as flat as a bowl upside down; half a hollow ball, seen from its
 /// mean, has 0.25.
@@ -23,8 +23,8 @@ const WIDE_OPENING: f64 = 0.2;
 
 /// Directions tried as the middle of the opening.
 const AXES: usize = 300;
-/// One point in so many may lie in the opening: rims are noisy, and points go astray.
-const ASTRAY: usize = 5000;
+/// One point in so many may lie in the opening: rims are noisy, and points are mislaid.
+const OUTLIER_DIVISOR: usize = 5000;
 
 /// Points a cell should hold for the shape of their scatter, and for their density.
 const POINTS_PER_SCATTER: usize = 64;
@@ -56,50 +56,50 @@ pub struct Opening {
     pub axis: Direction,
     /// Share of the sphere, 0 to 1.
     pub share: f64,
-    /// What makes the cloud a vessel; `None` if it may be a solid that was not seen from there.
-    pub vessel: Option<Vessel>,
+    /// What makes the cloud a container; `None` if it may be a solid that was not seen from there.
+    pub container: Option<OpenContainer>,
 }
 
-/// Why an opening is taken for the mouth of a vessel.
+/// Why an opening is taken for that of a container.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Vessel {
+pub enum OpenContainer {
     /// The scatter about the surface is that of two walls.
     TwoWalls,
     /// The opening is wide, and the points are spread over the surface as no single view spreads
     /// them: whoever saw the surface from all sides saw nothing in the opening.
-    SeenFromAllSides,
+    EvenDensity,
 }
 
-/// The widest opening of at least `LEAST_OPENING`, if any, and whether it is a mouth.
+/// The widest opening of at least `MIN_OPENING`, if any, and whether it is that of a container.
 ///
 /// About N operations where there is none, some 300 N otherwise.
 pub(crate) fn opening(samples: &RadialSamples) -> Option<Opening> {
-    let (axis, share) = widest_gap(&samples.directions)?;
-    let vessel = if scatter_of_two_walls(samples) {
-        Some(Vessel::TwoWalls)
+    let (axis, share) = widest_opening(&samples.directions)?;
+    let container = if scatter_of_two_walls(samples) {
+        Some(OpenContainer::TwoWalls)
     } else if share > WIDE_OPENING && seen_from_all_sides(samples) {
-        Some(Vessel::SeenFromAllSides)
+        Some(OpenContainer::EvenDensity)
     } else {
         None
     };
     Some(Opening {
         axis,
         share,
-        vessel,
+        container,
     })
 }
 
-/// Middle and share of the largest cap that holds at most one point in [`ASTRAY`], if it is an opening.
-fn widest_gap(directions: &[Direction]) -> Option<(Direction, f64)> {
-    let astray = directions.len() / ASTRAY;
+/// Middle and share of the largest cap that holds at most one point in [`OUTLIER_DIVISOR`], if it is an opening.
+fn widest_opening(directions: &[Direction]) -> Option<(Direction, f64)> {
+    let allowed = directions.len() / OUTLIER_DIVISOR;
     let away = |axis: &Direction, p: &Direction| 0.5 * (1.0 - axis.dot(p));
     let open = |axis: &Direction| {
-        let inside = directions.iter().filter(|p| away(axis, p) < LEAST_OPENING);
-        inside.take(astray + 1).count() <= astray
+        let inside = directions.iter().filter(|p| away(axis, p) < MIN_OPENING);
+        inside.take(allowed + 1).count() <= allowed
     };
     let share = |axis: Direction| {
         let mut near: Vec<f64> = directions.iter().map(|p| away(&axis, p)).collect();
-        let at = *near.select_nth_unstable_by(astray, f64::total_cmp).1;
+        let at = *near.select_nth_unstable_by(allowed, f64::total_cmp).1;
         (axis, at)
     };
     let gaps = even_directions(AXES).into_iter().filter(open).map(share);
@@ -107,8 +107,11 @@ fn widest_gap(directions: &[Direction]) -> Option<(Direction, f64)> {
 }
 
 /// Cells with enough points whose surroundings hold points too, away from the rim of the opening.
-fn inner_cells(samples: &RadialSamples, points: usize) -> (Cells, Vec<(usize, Vec<usize>)>) {
-    let cells = Cells::new(samples.radii.len() / points);
+fn inner_cells(
+    samples: &RadialSamples,
+    points: usize,
+) -> (SpherePartition, Vec<(usize, Vec<usize>)>) {
+    let cells = SpherePartition::new(samples.radii.len() / points);
     let members = members(&cells, &samples.directions);
     let reach = 1.2 * (4.0 * std::f64::consts::PI / cells.count() as f64).sqrt();
     let inside = |cell: usize| {
@@ -130,7 +133,7 @@ fn inner_cells(samples: &RadialSamples, points: usize) -> (Cells, Vec<(usize, Ve
 /// Geary's ratio of the scatter (mean size over standard deviation), pooled over the inner cells.
 ///
 /// Two walls d apart under noise of deviation σ exceed the normal ratio by 0.006 at d = 1.2 σ, by
-/// 0.027 at 2 σ and by 0.10 at 4 σ; edges, steps and stray points stay below it.
+/// 0.027 at 2 σ and by 0.10 at 4 σ; edges, steps and outliers stay below it.
 fn scatter_of_two_walls(samples: &RadialSamples) -> bool {
     let (_, inner) = inner_cells(samples, POINTS_PER_SCATTER);
     let (mut excess, mut count) = (0.0, 0.0);

@@ -8,12 +8,12 @@ use sph::direction::{retract, tangent_frame};
 const POINTS_PER_VIEW: usize = 160;
 
 /// Cells of nearly equal area: bands of latitude, each cut into sectors.
-pub(crate) struct Cells {
+pub(crate) struct SpherePartition {
     /// Index of each band's first cell, and at the end the number of cells.
     starts: Vec<usize>,
 }
 
-impl Cells {
+impl SpherePartition {
     /// About `count` cells, at least 8.
     pub(crate) fn new(count: usize) -> Self {
         let bands = ((count.max(8) as f64 * std::f64::consts::PI).sqrt() / 2.0).round() as usize;
@@ -104,7 +104,7 @@ mod tests {
     #[test]
     fn every_cell_holds_its_centre_and_its_share() {
         for count in [8, 30, 500] {
-            let cells = Cells::new(count);
+            let cells = SpherePartition::new(count);
             let mut hits = vec![0_usize; cells.count()];
             for p in even_directions(100 * cells.count()) {
                 hits[cells.index(&p)] += 1;

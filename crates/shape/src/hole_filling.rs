@@ -2,37 +2,37 @@
 
 use sph::Direction;
 
-use crate::cells::Cells;
 use crate::point_cloud::RadialSamples;
+use crate::sphere_partition::SpherePartition;
 
 /// Sweeps of Gauss and Seidel; holes are a few dozen cells wide at most.
 const SWEEPS: usize = 200;
 
-/// The samples, followed by one for every unseen direction.
+/// The samples, followed by one for every unobserved direction.
 ///
 /// Smoothness alone lets a surface shoot up over a hole as wide as half the sphere. The value given
-/// to an unseen direction is the harmonic continuation of what was seen around the hole (a discrete
+/// to an unobserved direction is the harmonic continuation of what was seen around the hole (a discrete
 /// Laplace equation on cells), so it stays between the least and the largest radius at the rim. It
 /// weighs as much as one point of the cloud.
-pub(crate) fn filled_in(
+pub(crate) fn fill_holes(
     samples: &RadialSamples,
-    unseen: &[Direction],
+    unobserved: &[Direction],
 ) -> (Vec<Direction>, Vec<f64>) {
     let mut directions = samples.directions.clone();
     let mut values = samples.radii.clone();
-    if unseen.is_empty() || samples.radii.is_empty() {
+    if unobserved.is_empty() || samples.radii.is_empty() {
         return (directions, values);
     }
     let radii = membrane(samples);
-    let cells = Cells::for_views(samples.radii.len());
-    directions.extend_from_slice(unseen);
-    values.extend(unseen.iter().map(|p| radii[cells.index(p)]));
+    let cells = SpherePartition::for_views(samples.radii.len());
+    directions.extend_from_slice(unobserved);
+    values.extend(unobserved.iter().map(|p| radii[cells.index(p)]));
     (directions, values)
 }
 
 /// Mean radius of every seen cell, and the mean of the neighbours for every other.
 fn membrane(samples: &RadialSamples) -> Vec<f64> {
-    let cells = Cells::for_views(samples.radii.len());
+    let cells = SpherePartition::for_views(samples.radii.len());
     let mut sums = vec![(0.0, 0_usize); cells.count()];
     for (p, r) in samples.directions.iter().zip(&samples.radii) {
         let (sum, count) = &mut sums[cells.index(p)];
@@ -58,7 +58,7 @@ fn membrane(samples: &RadialSamples) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::star::star_shape;
+    use crate::visibility::measure_visibility;
     use sph::direction::even_directions;
 
     #[test]
@@ -71,11 +71,11 @@ mod tests {
             radii: directions.iter().map(|p| 0.05 + 0.02 * p.x).collect(),
             directions,
         };
-        let star = star_shape(&samples);
-        let (directions, values) = filled_in(&samples, &star.unseen_directions);
+        let visibility = measure_visibility(&samples);
+        let (directions, values) = fill_holes(&samples, &visibility.unobserved_directions);
         assert_eq!(
             directions.len(),
-            samples.radii.len() + star.unseen_directions.len()
+            samples.radii.len() + visibility.unobserved_directions.len()
         );
         let new = &values[samples.radii.len()..];
         assert!(new.len() > 5);
