@@ -6,7 +6,7 @@ pub(crate) mod trial;
 
 use std::path::{Path, PathBuf};
 
-use hand::{Hand, HandModel, HandSpec, load_urdf_with_meshes};
+use hand::{Hand, HandModel, HandSpec, load_urdf_with_meshes, urdf_text};
 
 use crate::args::HandOptions;
 use crate::failure::Failure;
@@ -23,7 +23,8 @@ pub(crate) fn load(options: &HandOptions) -> Result<Hand, Failure> {
     }
     let urdf = &options.hand;
     let folders = MeshFolders::new(urdf, options.package_root.as_deref())?;
-    let model: HandModel = load_urdf_with_meshes(&text(urdf)?, |name| folders.bytes(name))
+    let bytes = input::read(urdf)?;
+    let model: HandModel = load_urdf_with_meshes(&urdf_text(&bytes), |name| folders.bytes(name))
         .map_err(|e| Failure::input(urdf, e))?;
     let path = spec_path(options);
     let spec = HandSpec::from_toml(&spec_text(options)?).map_err(|e| Failure::input(&path, e))?;
@@ -38,7 +39,7 @@ pub(crate) fn load(options: &HandOptions) -> Result<Hand, Failure> {
 /// Whether the options ask for the built-in hand, which brings its own spec.
 pub(crate) fn is_built_in(options: &HandOptions) -> Result<bool, Failure> {
     if options.hand != Path::new(BUILT_IN) {
-        return Ok(false);
+        return check_named(&options.hand).map(|()| false);
     }
     if options.spec.is_some() || options.package_root.is_some() {
         return Err(Failure::usage(
@@ -46,6 +47,18 @@ pub(crate) fn is_built_in(options: &HandOptions) -> Result<bool, Failure> {
         ));
     }
     Ok(true)
+}
+
+/// A bare word that is no file is the name of a hand that does not exist.
+fn check_named(hand: &Path) -> Result<(), Failure> {
+    let bare = hand.extension().is_none() && hand.components().count() == 1;
+    if bare && !hand.exists() {
+        return Err(Failure::usage(format!(
+            "no hand is named `{}`; the names are: {BUILT_IN}; for another hand give the path of its URDF",
+            hand.display()
+        )));
+    }
+    Ok(())
 }
 
 /// The hand inside the program.
@@ -71,10 +84,11 @@ pub(crate) fn spec_text(options: &HandOptions) -> Result<String, Failure> {
     text(&path)
 }
 
-/// A text file.
-pub(crate) fn text(path: &Path) -> Result<String, Failure> {
+/// The text of a TOML file.
+fn text(path: &Path) -> Result<String, Failure> {
     String::from_utf8(input::read(path)?).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
-        Failure::input(path, format!("not a text file: byte {at} is not UTF-8"))
+        let reason = format!("byte {at} is not UTF-8, which TOML needs; save the file as UTF-8");
+        Failure::input(path, reason)
     })
 }

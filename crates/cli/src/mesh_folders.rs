@@ -8,10 +8,15 @@ use crate::files;
 /// Larger files are not read.
 const MAX_BYTES: u64 = 64 << 20;
 
+/// A package is looked for in this many folders above that of the URDF.
+const LEVELS: usize = 6;
+
 /// The folder of a URDF and the root of its packages, with links and `..` resolved.
 pub(crate) struct MeshFolders {
     urdf: PathBuf,
     root: PathBuf,
+    /// Whether the user gave the root; then packages are looked for nowhere else.
+    given: bool,
 }
 
 impl MeshFolders {
@@ -34,21 +39,27 @@ impl MeshFolders {
         Ok(Self {
             urdf: resolve(beside)?,
             root: resolve(root.unwrap_or(beside))?,
+            given: root.is_some(),
         })
     }
 
     /// The bytes of a mesh by its name in the URDF.
     ///
-    /// `package://NAME/REST` is NAME/REST or REST under the root; other names are relative to the
-    /// URDF. Errors: a name that leads out of both folders, by `..` or by a link too; no file.
+    /// `package://NAME/REST` is NAME/REST or REST under the root, or, where no root is given, REST in
+    /// the package that holds the URDF or lies beside it; other names are relative to the URDF.
+    /// Errors: a name that leads out of these folders, by `..` or by a link too; no file.
     pub(crate) fn bytes(&self, name: &str) -> Result<Vec<u8>, String> {
         let places = self.places(name);
-        let found = places.iter().find_map(|place| place.canonicalize().ok());
-        let Some(path) = found else {
-            let tried: Vec<_> = places.iter().map(|p| p.display().to_string()).collect();
-            return Err(format!("no such file: {}", tried.join(", ")));
+        let found = places
+            .iter()
+            .find_map(|(folder, place)| Some((folder, place.canonicalize().ok()?)));
+        let Some((folder, path)) = found else {
+            return Err(self.nowhere(name, &places));
         };
-        if !(path.starts_with(&self.urdf) || path.starts_with(&self.root)) {
+        if ![folder, &self.urdf, &self.root]
+            .iter()
+            .any(|f| path.starts_with(f))
+        {
             return Err(format!(
                 "it lies outside {}; give the folder that holds it with --package-root",
                 self.root.display()
@@ -64,15 +75,61 @@ impl MeshFolders {
         files::bytes(&path).map_err(|e| format!("{}: {e}", path.display()))
     }
 
-    fn places(&self, name: &str) -> Vec<PathBuf> {
-        let Some(in_package) = name.strip_prefix("package://") else {
-            return vec![self.urdf.join(name.strip_prefix("file://").unwrap_or(name))];
-        };
-        let rest = in_package.split_once('/').map_or("", |(_, rest)| rest);
-        // Joining an absolute path would forget the root.
-        let under = |path: &str| self.root.join(path.trim_start_matches('/'));
-        vec![under(in_package), under(rest)]
+    fn nowhere(&self, name: &str, places: &[(PathBuf, PathBuf)]) -> String {
+        let tried: Vec<_> = places.iter().map(|p| p.1.display().to_string()).collect();
+        let tried = format!("no such file: {}", tried.join(", "));
+        match package_of(name) {
+            Some((package, _)) => format!(
+                "{tried}; give the folder that holds the package '{package}' with --package-root"
+            ),
+            None => tried,
+        }
     }
+
+    /// Where a mesh may be, each with the folder that it must not lead out of.
+    fn places(&self, name: &str) -> Vec<(PathBuf, PathBuf)> {
+        let Some((package, rest)) = package_of(name) else {
+            let path = self.urdf.join(name.strip_prefix("file://").unwrap_or(name));
+            return vec![(self.urdf.clone(), path)];
+        };
+        // Joining an absolute path would forget the folder.
+        let under = |folder: &Path| folder.join(rest.trim_start_matches('/'));
+        let mut places = vec![
+            (self.root.clone(), under(&self.root.join(package))),
+            (self.root.clone(), under(&self.root)),
+        ];
+        let plain = !package.is_empty() && !package.starts_with('.');
+        if plain && !self.given {
+            let folders = packages(&self.urdf, package);
+            places.extend(folders.into_iter().map(|f| (f.clone(), under(&f))));
+        }
+        places
+    }
+}
+
+/// NAME and REST of `package://NAME/REST`.
+fn package_of(name: &str) -> Option<(&str, &str)> {
+    let inside = name.strip_prefix("package://")?;
+    Some(inside.split_once('/').unwrap_or((inside, "")))
+}
+
+/// Folders that may be the package of a name: those above the URDF that bear its name or hold a
+/// package.xml, the one above the URDF's, and packages of that name beside any of these.
+fn packages(urdf: &Path, package: &str) -> Vec<PathBuf> {
+    let described = |folder: &Path| folder.join("package.xml").is_file();
+    let mut found = Vec::new();
+    for (level, folder) in urdf.ancestors().skip(1).take(LEVELS).enumerate() {
+        let named = folder.file_name().is_some_and(|n| n == package);
+        // The root of the file system is no package.
+        if folder.parent().is_some() && (level == 0 || named || described(folder)) {
+            found.push(folder.to_owned());
+        }
+        let beside = folder.join(package);
+        if described(&beside) {
+            found.push(beside);
+        }
+    }
+    found
 }
 
 #[cfg(test)]
@@ -122,6 +179,44 @@ mod tests {
         // An absolute path after the mark is looked for under the root, where there is none.
         assert!(folders.bytes(&format!("package://{absolute}")).is_err());
         for name in ["package://", "", ".", "package://robot"] {
+            assert!(folders.bytes(name).is_err(), "{name}");
+        }
+    }
+
+    #[test]
+    fn packages_are_found_by_walking_up() {
+        let (outer, _) = folders();
+        let urdf = outer.path().join("robot/urdf/hand.urdf");
+        let folders = MeshFolders::new(&urdf, None).unwrap();
+        // The folder above that of the URDF, whatever it is called.
+        for name in [
+            "package://robot/meshes/a.stl",
+            "package://other/meshes/a.stl",
+        ] {
+            assert_eq!(folders.bytes(name).unwrap(), b"a", "{name}");
+        }
+        // Farther up only what bears the name or describes itself as a package.
+        let deep = outer.path().join("robot/urdf/left/small");
+        std::fs::create_dir_all(&deep).unwrap();
+        let folders = MeshFolders::new(&deep.join("hand.urdf"), None).unwrap();
+        assert_eq!(folders.bytes("package://robot/meshes/a.stl").unwrap(), b"a");
+        let error = folders.bytes("package://other/meshes/a.stl").unwrap_err();
+        assert!(error.contains("'other' with --package-root"), "{error}");
+        std::fs::write(outer.path().join("robot/package.xml"), "<package/>").unwrap();
+        assert_eq!(folders.bytes("package://other/meshes/a.stl").unwrap(), b"a");
+        // A package beside it.
+        let beside = outer.path().join("parts/meshes");
+        std::fs::create_dir_all(&beside).unwrap();
+        std::fs::write(beside.join("b.stl"), "b").unwrap();
+        assert!(folders.bytes("package://parts/meshes/b.stl").is_err());
+        std::fs::write(outer.path().join("parts/package.xml"), "<package/>").unwrap();
+        assert_eq!(folders.bytes("package://parts/meshes/b.stl").unwrap(), b"b");
+        // Out of a package leads nothing.
+        for name in [
+            "package://parts/../secret.stl",
+            "package://robot/meshes/../../secret.stl",
+            "package://../secret.stl",
+        ] {
             assert!(folders.bytes(name).is_err(), "{name}");
         }
     }

@@ -1,6 +1,6 @@
 //! What became of hand poses, in words.
 
-use hand::{Hand, OutcomeCounts};
+use hand::{Geometry, Hand, OutcomeCounts, Rejection};
 
 /// "96 of 200 poses give a stable grasp; 60 tip did not arrive, …".
 pub(crate) fn sentence(outcomes: &OutcomeCounts) -> String {
@@ -53,9 +53,31 @@ pub(crate) fn why_none(outcomes: &OutcomeCounts, hand: &Hand) -> String {
     let place = most.map_or(String::new(), |(r, count)| {
         format!(", {count} times because {}", r.describe(hand))
     });
+    let hull = most.and_then(|(r, _)| filling_hull(hand, r));
     format!(
-        "{count} of {} poses ended as {}{place}; {advice}",
+        "{count} of {} poses ended as {}{place}; {}",
         outcomes.total(),
-        reason.replace('_', " ")
+        reason.replace('_', " "),
+        hull.unwrap_or_else(|| advice.to_owned())
     )
+}
+
+/// Where a link that came too near is made of meshes: what their convex hulls may do.
+fn filling_hull(hand: &Hand, rejection: &Rejection) -> Option<String> {
+    let (Rejection::BaseNearObject { link } | Rejection::PartNearObject { link }) = rejection
+    else {
+        return None;
+    };
+    let link = &hand.model().links()[*link];
+    let hull = link
+        .geometry
+        .iter()
+        .find_map(|piece| match &piece.geometry {
+            Geometry::Hull { file, .. } => Some(file),
+            _ => None,
+        })?;
+    Some(format!(
+        "the convex hull of the mesh '{hull}' stands in for '{}' and fills its hollows, perhaps the space where the object would be: split the mesh into convex parts, or use boxes and cylinders; or the object is too large for the hand, or the least stand-off (standoff_m of the TOML) too small",
+        link.name
+    ))
 }

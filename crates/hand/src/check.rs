@@ -1,5 +1,7 @@
 //! What a user should know about a hand of theirs before it grasps anything.
 
+mod units;
+
 use std::fmt;
 
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -56,6 +58,8 @@ pub fn check_hand(hand: &Hand, self_clearance: f64) -> Result<Vec<Finding>, Kine
         reach(hand, preshape, &poses, &mut findings);
     }
     geometry(hand, &mut findings);
+    units::limits(hand, &mut findings);
+    units::meshes(hand, &mut findings);
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     Ok(findings)
 }
@@ -176,7 +180,7 @@ fn geometry(hand: &Hand, findings: &mut Vec<Finding>) {
         let hulls = link.geometry.iter().filter(hull).count();
         if hulls > 0 {
             let text = format!(
-                "link '{}': {hulls} mesh(es) stand in by their convex hulls",
+                "link '{}': {hulls} mesh(es) stand in by their convex hulls, which fill every hollow",
                 link.name
             );
             add(findings, Severity::Note, text);

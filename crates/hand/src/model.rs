@@ -32,6 +32,8 @@ pub enum Geometry {
     /// The convex hull of a mesh's vertices (simplified to about 100 vertices and enlarged to
     /// hold them all where it takes part in collision tests).
     Hull {
+        /// The name of the mesh file.
+        file: String,
         /// The vertices of the mesh, already scaled.
         points: Vec<Point3<f64>>,
     },

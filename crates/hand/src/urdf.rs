@@ -1,17 +1,23 @@
-//! A [`HandModel`] from a URDF text; the only user of urdf-rs.
+//! A [`HandModel`] from a URDF text.
 //!
-//! The reader accepts much that is no hand (links that do not exist, duplicate names,
-//! NaN sizes), so everything is checked here and refused by name.
+//! Read is what a hand needs: the tree of links, collision geometry, axes, limits and mimics. Masses,
+//! efforts, visuals and the elements of simulators are passed over. Everything that is read is checked
+//! and refused by name.
 
-mod guard;
+mod document;
+mod encoding;
 mod tree;
+mod xml;
 
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use crate::mesh_file::{MeshFileError, mesh_vertices};
 use crate::model::{Geometry, HandModel, LinkGeometry};
-pub use guard::{MAX_URDF_BYTES, MAX_URDF_DEPTH, MAX_URDF_ELEMENTS};
+use document::{LinkText, Origin, Piece, Robot, Shape};
+pub use encoding::urdf_text;
+pub(crate) use tree::UNLIMITED;
+pub use xml::{MAX_URDF_BYTES, MAX_URDF_DEPTH, MAX_URDF_ELEMENTS};
 
 /// The largest number of links or of joints accepted.
 pub const MAX_LINKS: usize = 512;
@@ -57,15 +63,25 @@ pub enum UrdfError {
         /// What is wrong.
         what: &'static str,
     },
-    /// A vector with an entry that is no number; the URDF reader would pass over it.
+    /// An entry that is no number.
     #[error("'{word}' in the {what} at byte {byte} is no number")]
     NotANumber {
-        /// Where the vector stands.
+        /// Where the element stands that holds it.
         byte: usize,
-        /// Which vector: its attribute.
+        /// Its attribute.
         what: &'static str,
         /// The entry, its first 40 characters.
         word: String,
+    },
+    /// A vector that has not three entries.
+    #[error("the {what} at byte {byte} has {count} numbers, not three")]
+    NotThree {
+        /// Where the element stands that holds it.
+        byte: usize,
+        /// Its attribute.
+        what: &'static str,
+        /// How many numbers it has.
+        count: usize,
     },
     /// A document type (and so possibly entities) is declared.
     #[error("a document type or entity is declared at byte {byte}; URDFs need none")]
@@ -73,9 +89,60 @@ pub enum UrdfError {
         /// Where.
         byte: usize,
     },
-    /// The URDF reader refused it.
-    #[error("not a URDF: {0}")]
-    Parse(String),
+    /// The file is another thing than a URDF.
+    #[error("this is {found}, not a URDF; {advice}")]
+    Foreign {
+        /// What it is.
+        found: &'static str,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// The root element is not that of a URDF.
+    #[error("not a URDF: the root element is <{found}>, expected <robot>")]
+    Root {
+        /// Its name, the first 40 characters.
+        found: String,
+    },
+    /// An element lacks what it must have.
+    #[error("{item} has no {what}")]
+    Missing {
+        /// The element.
+        item: String,
+        /// What is missing.
+        what: &'static str,
+    },
+    /// A collision element without geometry.
+    #[error(
+        "link '{link}': a <collision> has an empty <geometry>; give it a box, cylinder, capsule, sphere or mesh, or remove it"
+    )]
+    EmptyGeometry {
+        /// The link.
+        link: String,
+    },
+    /// Geometry of a form that is not known.
+    #[error(
+        "link '{link}': collision geometry <{kind}> is not known; box, cylinder, capsule, sphere and mesh are"
+    )]
+    GeometryKind {
+        /// The link.
+        link: String,
+        /// Its element, the first 40 characters.
+        kind: String,
+    },
+    /// A joint that moves has no limits.
+    #[error(
+        "joint '{joint}' is {kind} and has no <limit>; add <limit lower=\"…\" upper=\"…\"/> in {unit}{otherwise}"
+    )]
+    NoLimit {
+        /// The joint.
+        joint: String,
+        /// Its kind.
+        kind: String,
+        /// The unit of its values.
+        unit: &'static str,
+        /// What else would do.
+        otherwise: &'static str,
+    },
     /// No link at all.
     #[error("the URDF has no links")]
     NoLinks,
@@ -185,8 +252,7 @@ pub fn load_urdf_with_meshes<E: std::fmt::Display>(
     text: &str,
     mesh_bytes: impl Fn(&str) -> Result<Vec<u8>, E>,
 ) -> Result<HandModel, UrdfError> {
-    guard::check_text(text)?;
-    let robot = urdf_rs::read_from_string(text).map_err(|e| UrdfError::Parse(e.to_string()))?;
+    let robot = document::read(text)?;
     check_counts(&robot)?;
     let resolve = |link: &str, file: &str| {
         let bytes = mesh_bytes(file).map_err(|e| mesh_error(link, file, e.to_string()))?;
@@ -211,7 +277,7 @@ fn mesh_error(link: &str, file: &str, reason: String) -> UrdfError {
     }
 }
 
-fn check_counts(robot: &urdf_rs::Robot) -> Result<(), UrdfError> {
+fn check_counts(robot: &Robot) -> Result<(), UrdfError> {
     if robot.links.is_empty() {
         return Err(UrdfError::NoLinks);
     }
@@ -227,7 +293,7 @@ fn check_counts(robot: &urdf_rs::Robot) -> Result<(), UrdfError> {
 }
 
 fn link_geometry(
-    link: &urdf_rs::Link,
+    link: &LinkText,
     resolve: &MeshResolver<'_>,
 ) -> Result<Vec<LinkGeometry>, UrdfError> {
     if link.collision.len() > MAX_PIECES {
@@ -242,46 +308,45 @@ fn link_geometry(
         .map(|piece| {
             Ok(LinkGeometry {
                 link_from_geometry: isometry(&link.name, &piece.origin)?,
-                geometry: geometry(&link.name, &piece.geometry, resolve)?,
+                geometry: geometry(&link.name, piece, resolve)?,
             })
         })
         .collect()
 }
 
-fn geometry(
-    link: &str,
-    piece: &urdf_rs::Geometry,
-    resolve: &MeshResolver<'_>,
-) -> Result<Geometry, UrdfError> {
+fn geometry(link: &str, piece: &Piece, resolve: &MeshResolver<'_>) -> Result<Geometry, UrdfError> {
     let half = |what, length: f64| Ok(positive(link, what, length)? / 2.0);
-    Ok(match piece {
-        urdf_rs::Geometry::Box { size } => Geometry::Box {
+    Ok(match &piece.shape {
+        Shape::Box { size } => Geometry::Box {
             half_extents: Vector3::new(
                 half("box size", size[0])?,
                 half("box size", size[1])?,
                 half("box size", size[2])?,
             ),
         },
-        urdf_rs::Geometry::Cylinder { radius, length } => Geometry::Cylinder {
+        Shape::Cylinder { radius, length } => Geometry::Cylinder {
             radius: positive(link, "cylinder radius", *radius)?,
             half_length: half("cylinder length", *length)?,
         },
-        urdf_rs::Geometry::Capsule { radius, length } => Geometry::Capsule {
+        Shape::Capsule { radius, length } => Geometry::Capsule {
             radius: positive(link, "capsule radius", *radius)?,
             half_length: half("capsule length", *length)?,
         },
-        urdf_rs::Geometry::Sphere { radius } => Geometry::Sphere {
+        Shape::Sphere { radius } => Geometry::Sphere {
             radius: positive(link, "sphere radius", *radius)?,
         },
-        urdf_rs::Geometry::Mesh { filename, scale } => {
-            let scale = vector(link, "mesh scale", &scale.map_or([1.0; 3], |s| s.0))?;
-            let points: Vec<_> = resolve(link, filename)?
+        Shape::Mesh { file, scale } => {
+            let scale = vector(link, "mesh scale", scale)?;
+            let points: Vec<_> = resolve(link, file)?
                 .iter()
                 .map(|p| Point3::from(p.coords.component_mul(&scale)))
                 .collect();
             crate::collision::check_hull(&points)
-                .map_err(|e| mesh_error(link, filename, e.to_string()))?;
-            Geometry::Hull { points }
+                .map_err(|e| mesh_error(link, file, e.to_string()))?;
+            Geometry::Hull {
+                file: file.clone(),
+                points,
+            }
         }
     })
 }
@@ -313,12 +378,12 @@ fn vector(item: &str, what: &'static str, v: &[f64; 3]) -> Result<Vector3<f64>, 
 }
 
 /// Pose from `xyz` and `rpy` (fixed axes: roll about x, then pitch about y, then yaw about z).
-fn isometry(item: &str, origin: &urdf_rs::Pose) -> Result<Isometry3<f64>, UrdfError> {
-    let xyz = vector(item, "origin xyz", &origin.xyz.0)?;
+fn isometry(item: &str, origin: &Origin) -> Result<Isometry3<f64>, UrdfError> {
+    let xyz = vector(item, "origin xyz", &origin.xyz)?;
     for &value in xyz.iter() {
         checked(item, "origin xyz", value, value.abs() <= MAX_LENGTH_M)?;
     }
-    let rpy = vector(item, "origin rpy", &origin.rpy.0)?;
+    let rpy = vector(item, "origin rpy", &origin.rpy)?;
     Ok(Isometry3::from_parts(
         Translation3::from(xyz),
         UnitQuaternion::from_euler_angles(rpy.x, rpy.y, rpy.z),

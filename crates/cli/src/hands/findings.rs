@@ -4,12 +4,16 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use hand::{Hand, HandModel, HandSpec, Severity, check_hand, load_urdf_with_meshes, mesh_vertices};
+use hand::{
+    Hand, HandModel, HandSpec, Severity, check_hand, load_urdf_with_meshes, mesh_vertices,
+    urdf_text,
+};
 use serde::Serialize;
 
-use super::{built_in, is_built_in, spec_path, spec_text, text};
+use super::{built_in, is_built_in, spec_path, spec_text};
 use crate::args::HandOptions;
 use crate::failure::Failure;
+use crate::input;
 use crate::mesh_folders::MeshFolders;
 
 /// Distance that parts of a hand should keep from each other, metres (Sec. IV-C of the paper).
@@ -82,14 +86,12 @@ pub(crate) fn check(options: &HandOptions) -> Result<Checked, Failure> {
 /// The URDF with every mesh that cannot be had named, not only the first.
 fn model(options: &HandOptions, checked: &mut Checked) -> Option<HandModel> {
     let urdf = &options.hand;
-    let read = || -> Result<(String, MeshFolders), Failure> {
-        let text = text(urdf)?;
-        Ok((
-            text,
-            MeshFolders::new(urdf, options.package_root.as_deref())?,
-        ))
+    let read = || -> Result<(Vec<u8>, MeshFolders), Failure> {
+        let bytes = input::read(urdf)?;
+        let folders = MeshFolders::new(urdf, options.package_root.as_deref())?;
+        Ok((bytes, folders))
     };
-    let (text, folders) = match read() {
+    let (bytes, folders) = match read() {
         Ok(both) => both,
         Err(failure) => {
             checked.findings.push(bare(failure));
@@ -97,7 +99,7 @@ fn model(options: &HandOptions, checked: &mut Checked) -> Option<HandModel> {
         }
     };
     let missing = RefCell::new(BTreeSet::new());
-    let model = load_urdf_with_meshes(&text, |name| {
+    let model = load_urdf_with_meshes(&urdf_text(&bytes), |name| {
         let usable = folders.bytes(name).and_then(|bytes| {
             mesh_vertices(&bytes, name).map_err(|e| e.to_string())?;
             Ok(bytes)

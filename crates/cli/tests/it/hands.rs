@@ -422,3 +422,40 @@ fn options_of_hands_are_checked() {
         &["none.urdf", "2 errors"],
     );
 }
+
+#[test]
+fn unknown_names_are_answered_with_the_known_ones() {
+    let folder = TempDir::new().unwrap();
+    for arguments in [["grasp", "--hand", "shadow"], ["hand", "check", "shadow"]] {
+        let output = moduli(folder.path(), &arguments);
+        refused(&output, 2, &["no hand is named `shadow`", "sdh", "URDF"]);
+    }
+}
+
+/// The tips reach past a ball that a hull of the base's mesh fills.
+#[test]
+fn a_hull_that_fills_the_hand_is_linked_to_what_it_does() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    gripper(here);
+    let urdf = std::fs::read_to_string(here.join(URDF)).unwrap();
+    let palm = r#"<box size="0.04 0.3 0.02"/>"#;
+    let mesh = r#"<mesh filename="package://gripper/meshes/u.obj"/>"#;
+    std::fs::write(here.join(URDF), urdf.replace(palm, mesh)).unwrap();
+    let corner = |k: usize| {
+        let side = |bit: usize, low: f64, high: f64| if k >> bit & 1 == 0 { low } else { high };
+        format!(
+            "v {} {} {}\n",
+            side(0, -0.05, 0.05),
+            side(1, -0.15, 0.15),
+            side(2, -0.01, 0.1)
+        )
+    };
+    let u: String = (0..8).map(corner).collect();
+    std::fs::write(here.join("gripper/meshes/u.obj"), u).unwrap();
+    // The package is found without being told where it is.
+    let output = moduli(here, &["hand", "check", URDF, "-o", "p.html"]);
+    let said = stdout(&output);
+    let words = "the convex hull of the mesh 'package://gripper/meshes/u.obj' stands in for 'base' and fills its hollows";
+    assert!(said.contains(words), "{said}");
+}

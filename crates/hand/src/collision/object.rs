@@ -308,6 +308,7 @@ mod tests {
             },
             Geometry::Sphere { radius: 0.015 },
             Geometry::Hull {
+                file: String::new(),
                 points: (0..8).map(corner).collect(),
             },
         ];

@@ -144,7 +144,7 @@ impl ConvexPiece {
                 )
             }
             &Geometry::Sphere { radius } => (Form::Ball(Ball::new(radius)), radius),
-            Geometry::Hull { points } => {
+            Geometry::Hull { points, .. } => {
                 let (hull, centre) = hull(points)?;
                 link_from_piece *= nalgebra::Translation3::from(centre.coords);
                 let radius = hull.points().iter().map(|p| p.length()).fold(0.0, f64::max);
@@ -464,6 +464,7 @@ mod tests {
         let placed = LinkGeometry {
             link_from_geometry: Isometry3::identity(),
             geometry: Geometry::Hull {
+                file: String::new(),
                 points: (0..8).map(corner).collect(),
             },
         };

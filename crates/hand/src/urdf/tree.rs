@@ -4,15 +4,22 @@ use std::collections::HashMap;
 
 use nalgebra::{UnitVector3, Vector3};
 
+use super::document::{JointText, Robot};
 use super::{UrdfError, isometry, number, vector};
 use crate::model::{Drive, HandModel, Joint, JointKind, Link, LinkGeometry};
 
-/// Limits of a continuous joint: one turn each way is all that a hand asks for.
-const CONTINUOUS_LIMITS: (f64, f64) = (-std::f64::consts::TAU, std::f64::consts::TAU);
+/// How far a joint without limits goes each way: one turn (radians), or one metre, is all that a hand
+/// asks for.
+pub(crate) const UNLIMITED: [(JointKind, f64); 2] = [
+    (JointKind::Revolute, std::f64::consts::TAU),
+    (JointKind::Prismatic, 1.0),
+];
+/// Bounds beyond this mean that there are none: writers put 1e16 or infinity there.
+const NO_BOUND: f64 = 1e3;
 
 /// Builds the model from a URDF and the geometry of its links (in the file's order).
 pub(super) fn build(
-    robot: &urdf_rs::Robot,
+    robot: &Robot,
     geometry: Vec<Vec<LinkGeometry>>,
 ) -> Result<HandModel, UrdfError> {
     let link_of = unique_links(robot)?;
@@ -29,12 +36,7 @@ pub(super) fn build(
         .zip(&drives)
         .map(|(joint, &drive)| {
             let place = |name: &str| new_of[link_of[name]];
-            moving_joint(
-                joint,
-                place(&joint.parent.link),
-                place(&joint.child.link),
-                drive,
-            )
+            moving_joint(joint, place(&joint.parent), place(&joint.child), drive)
         })
         .collect::<Result<Vec<_>, _>>()?;
     let mut geometry: Vec<_> = geometry.into_iter().map(Some).collect();
@@ -57,7 +59,7 @@ pub(super) fn build(
     })
 }
 
-fn unique_links(robot: &urdf_rs::Robot) -> Result<HashMap<&str, usize>, UrdfError> {
+fn unique_links(robot: &Robot) -> Result<HashMap<&str, usize>, UrdfError> {
     let mut link_of = HashMap::new();
     for (index, link) in robot.links.iter().enumerate() {
         if link_of.insert(link.name.as_str(), index).is_some() {
@@ -68,13 +70,10 @@ fn unique_links(robot: &urdf_rs::Robot) -> Result<HashMap<&str, usize>, UrdfErro
 }
 
 /// The joint that carries each link.
-fn parents(
-    robot: &urdf_rs::Robot,
-    link_of: &HashMap<&str, usize>,
-) -> Result<Vec<Option<usize>>, UrdfError> {
+fn parents(robot: &Robot, link_of: &HashMap<&str, usize>) -> Result<Vec<Option<usize>>, UrdfError> {
     let mut parent = vec![None; robot.links.len()];
     for (index, joint) in robot.joints.iter().enumerate() {
-        for name in [&joint.parent.link, &joint.child.link] {
+        for name in [&joint.parent, &joint.child] {
             if !link_of.contains_key(name.as_str()) {
                 return Err(UrdfError::UnknownLink {
                     joint: joint.name.clone(),
@@ -82,10 +81,10 @@ fn parents(
                 });
             }
         }
-        let child = link_of[joint.child.link.as_str()];
+        let child = link_of[joint.child.as_str()];
         if let Some(first) = parent[child].replace(index) {
             return Err(UrdfError::TwoParents {
-                link: joint.child.link.clone(),
+                link: joint.child.clone(),
                 first: robot.joints[first].name.clone(),
                 second: joint.name.clone(),
             });
@@ -96,14 +95,14 @@ fn parents(
 
 /// Links from the root outwards; every link must be reached from one root.
 fn parents_first(
-    robot: &urdf_rs::Robot,
+    robot: &Robot,
     link_of: &HashMap<&str, usize>,
     parent: &[Option<usize>],
 ) -> Result<Vec<usize>, UrdfError> {
     let roots: Vec<usize> = (0..parent.len()).filter(|&l| parent[l].is_none()).collect();
     let mut children = vec![Vec::new(); parent.len()];
     for joint in &robot.joints {
-        children[link_of[joint.parent.link.as_str()]].push(link_of[joint.child.link.as_str()]);
+        children[link_of[joint.parent.as_str()]].push(link_of[joint.child.as_str()]);
     }
     let mut order: Vec<usize> = roots.iter().copied().take(1).collect();
     let mut next = 0;
@@ -126,14 +125,14 @@ fn parents_first(
 }
 
 /// Where each joint's value comes from; mimic chains are followed to a driven joint.
-fn drives(robot: &urdf_rs::Robot) -> Result<Vec<Drive>, UrdfError> {
+fn drives(robot: &Robot) -> Result<Vec<Drive>, UrdfError> {
     let mut index_of = HashMap::new();
     for (index, joint) in robot.joints.iter().enumerate() {
         if index_of.insert(joint.name.as_str(), index).is_some() {
             return Err(UrdfError::DuplicateJoint(joint.name.clone()));
         }
     }
-    let fixed = |j: usize| robot.joints[j].joint_type == urdf_rs::JointType::Fixed;
+    let fixed = |j: usize| robot.joints[j].kind == "fixed";
     let mut number_of = vec![None; robot.joints.len()];
     let mut count = 0;
     for (index, joint) in robot.joints.iter().enumerate() {
@@ -156,7 +155,7 @@ fn drives(robot: &urdf_rs::Robot) -> Result<Vec<Drive>, UrdfError> {
 }
 
 fn follow_mimic(
-    robot: &urdf_rs::Robot,
+    robot: &Robot,
     index_of: &HashMap<&str, usize>,
     number_of: &[Option<usize>],
     start: usize,
@@ -170,17 +169,13 @@ fn follow_mimic(
             of: mimic.joint.clone(),
             why,
         };
-        let factor = number(
-            &joint.name,
-            "mimic multiplier",
-            mimic.multiplier.unwrap_or(1.0),
-        )?;
-        offset += multiplier * number(&joint.name, "mimic offset", mimic.offset.unwrap_or(0.0))?;
+        let factor = number(&joint.name, "mimic multiplier", mimic.multiplier)?;
+        offset += multiplier * number(&joint.name, "mimic offset", mimic.offset)?;
         multiplier *= factor;
         at = *index_of
             .get(mimic.joint.as_str())
             .ok_or_else(|| wrong("does not exist"))?;
-        if robot.joints[at].joint_type == urdf_rs::JointType::Fixed {
+        if robot.joints[at].kind == "fixed" {
             return Err(wrong("is fixed"));
         }
         if let Some(driven) = number_of[at] {
@@ -199,28 +194,27 @@ fn follow_mimic(
 }
 
 fn moving_joint(
-    joint: &urdf_rs::Joint,
+    joint: &JointText,
     parent: usize,
     child: usize,
     drive: Drive,
 ) -> Result<Joint, UrdfError> {
-    use urdf_rs::JointType;
-    let (kind, limits) = match joint.joint_type {
-        JointType::Fixed => (JointKind::Fixed, (0.0, 0.0)),
-        JointType::Revolute => (JointKind::Revolute, limits(joint)?),
-        JointType::Prismatic => (JointKind::Prismatic, limits(joint)?),
-        JointType::Continuous => (JointKind::Revolute, CONTINUOUS_LIMITS),
-        ref other => {
+    let (kind, limits) = match joint.kind.as_str() {
+        "fixed" => (JointKind::Fixed, (0.0, 0.0)),
+        "revolute" => (JointKind::Revolute, limits(joint, JointKind::Revolute)?),
+        "prismatic" => (JointKind::Prismatic, limits(joint, JointKind::Prismatic)?),
+        "continuous" => (JointKind::Revolute, unlimited(JointKind::Revolute)),
+        other => {
             return Err(UrdfError::JointKind {
                 joint: joint.name.clone(),
-                kind: format!("{other:?}").to_lowercase(),
+                kind: other.chars().take(40).collect(),
             });
         }
     };
     let axis = if kind == JointKind::Fixed {
         Vector3::x_axis()
     } else {
-        let axis = vector(&joint.name, "axis", &joint.axis.xyz.0)?;
+        let axis = vector(&joint.name, "axis", &joint.axis)?;
         UnitVector3::try_new(axis, 1e-9).ok_or_else(|| UrdfError::ZeroAxis(joint.name.clone()))?
     };
     Ok(Joint {
@@ -235,16 +229,48 @@ fn moving_joint(
     })
 }
 
-fn limits(joint: &urdf_rs::Joint) -> Result<(f64, f64), UrdfError> {
-    let lower = number(&joint.name, "lower limit", joint.limit.lower)?;
-    let upper = number(&joint.name, "upper limit", joint.limit.upper)?;
-    if lower <= upper {
-        Ok((lower, upper))
-    } else {
-        Err(UrdfError::Limits {
+fn unlimited(kind: JointKind) -> (f64, f64) {
+    let bound = UNLIMITED.iter().find(|(k, _)| *k == kind);
+    bound.map_or((0.0, 0.0), |(_, far)| (-far, *far))
+}
+
+/// Limits as given; bounds that mean none become those of a joint without limits.
+fn limits(joint: &JointText, kind: JointKind) -> Result<(f64, f64), UrdfError> {
+    let far = unlimited(kind);
+    let Some((lower, upper)) = joint.limit else {
+        // A joint that follows another moves as that one does.
+        return if joint.mimic.is_some() {
+            Ok(far)
+        } else {
+            Err(no_limit(joint, kind))
+        };
+    };
+    for (what, value) in [("lower limit", lower), ("upper limit", upper)] {
+        if value.is_nan() {
+            let item = joint.name.clone();
+            return Err(UrdfError::Number { item, what, value });
+        }
+    }
+    if !(lower <= upper) {
+        return Err(UrdfError::Limits {
             joint: joint.name.clone(),
             lower,
             upper,
-        })
+        });
+    }
+    let bounded = |value: f64, far: f64| if value.abs() < NO_BOUND { value } else { far };
+    Ok((bounded(lower, far.0), bounded(upper, far.1)))
+}
+
+fn no_limit(joint: &JointText, kind: JointKind) -> UrdfError {
+    let (unit, otherwise) = match kind {
+        JointKind::Prismatic => ("metres", ""),
+        _ => ("radians", ", or make its type continuous"),
+    };
+    UrdfError::NoLimit {
+        joint: joint.name.clone(),
+        kind: joint.kind.clone(),
+        unit,
+        otherwise,
     }
 }

@@ -7,3 +7,4 @@ mod hostile_urdf;
 mod kinematics;
 mod reach;
 mod synthesis;
+mod urdf_files;

@@ -65,7 +65,6 @@ const ARROWS: &[(&str, &[&str])] = &[
 const DOORS: &[(&str, &str, &str)] = &[
     ("faer", "sph", "regression"),
     ("parry3d_f64", "hand", "collision"),
-    ("urdf_rs", "hand", "urdf"),
     ("bincode", "record", "envelope"),
 ];
 

@@ -79,7 +79,7 @@ pub fn link_pieces(
                     half_length,
                 } => (turned, Box::new(Capsule::new_y(*half_length, *radius))),
                 Geometry::Sphere { radius } => (placed, Box::new(Ball::new(*radius))),
-                Geometry::Hull { points } => {
+                Geometry::Hull { points, .. } => {
                     let points: Vec<_> = points.iter().map(|p| vector(p.coords)).collect();
                     let hull = ConvexPolyhedron::from_convex_hull(&points).unwrap();
                     (placed, Box::new(hull))
