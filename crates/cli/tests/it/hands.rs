@@ -347,11 +347,13 @@ fn hostile_hands_are_refused_by_name() {
     let toml = "gripper/urdf/gripper.toml";
     refused(&hand("missing.urdf", toml), 3, &["missing.urdf"]);
     refused(&hand("gripper", toml), 3, &["gripper", "directory"]);
-    refused(&hand("egg.shape", toml), 3, &["egg.shape", "not a text"]);
+    refused(&hand("egg.shape", toml), 3, &["egg.shape", "not XML"]);
     refused(&hand(toml, toml), 3, &["gripper.toml"]);
-    // Outside the package root nothing is read.
-    let apart = hand(URDF, toml);
-    refused(&apart, 3, &["tip.obj", "no such file"]);
+    // Outside the folders of packages nothing is read.
+    std::fs::create_dir_all(here.join("apart/urdf")).unwrap();
+    std::fs::copy(here.join(URDF), here.join("apart/urdf/g.urdf")).unwrap();
+    let apart = hand("apart/urdf/g.urdf", toml);
+    refused(&apart, 3, &["tip.obj", "no such file", "--package-root"]);
     let with_root = |spec: &str| {
         let arguments = [
             "synthesize",
