@@ -18,19 +18,28 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("run", &[]),
     ("testkit", &[]),
     ("grasp", &[]),
-    ("shape", &["sph"]),
+    ("sphere-map", &[]),
+    ("shape", &["sph", "sphere-map"]),
     ("space", &["sph", "shape", "grasp"]),
     ("hand", &["sph", "shape", "grasp", "fixtures"]),
     (
         "moduli",
         &[
-            "sph", "shape", "grasp", "space", "hand", "record", "fixtures",
+            "sph",
+            "sphere-map",
+            "shape",
+            "grasp",
+            "space",
+            "hand",
+            "record",
+            "fixtures",
         ],
     ),
     (
         "experiments",
         &[
             "sph",
+            "sphere-map",
             "shape",
             "grasp",
             "space",
@@ -47,6 +56,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         "cli",
         &[
             "sph",
+            "sphere-map",
             "shape",
             "grasp",
             "space",
