@@ -2,7 +2,10 @@
 
 mod grasps;
 mod hands;
+mod library;
 mod shapes;
+
+use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
@@ -12,6 +15,9 @@ pub(crate) use grasps::{
 };
 pub(crate) use hands::{
     GraspOptions, HandCheckOptions, HandCommand, HandOptions, SynthesizeOptions,
+};
+pub(crate) use library::{
+    LibraryAddOptions, LibraryCommand, LibraryListOptions, LibraryRemoveOptions,
 };
 pub(crate) use shapes::{
     DistanceOptions, EvalOptions, FitOptions, InfoOptions, MeshOptions, Model,
@@ -94,12 +100,38 @@ pub(crate) enum Command {
     Hand(HandCommand),
     /// Do everything: fit the cloud, transfer and synthesize grasps, and write a page of the results.
     #[command(
-        after_help = "Example: moduli grasp scan.ply -o out\nExample: moduli grasp scan.ply --unit mm --convention openrave -o out"
+        after_help = "Example: moduli grasp scan.ply -o out\nExample: moduli grasp scan.ply --unit mm --convention openrave -o out\nExample: moduli grasp mug.ply bottle.ply --library mine -o out"
     )]
     Grasp(GraspOptions),
+    /// Keep own known objects, from which `moduli grasp --library` transfers.
+    #[command(
+        subcommand,
+        after_help = "Example: moduli library add mine mug.ply && moduli grasp scan.ply --library mine"
+    )]
+    Library(LibraryCommand),
     /// Describe a shape, a library, a grasps.json, a cloud or a mesh.
     #[command(after_help = "Example: moduli info scan.shape")]
     Info(InfoOptions),
+    /// Print the completions of a shell.
+    #[command(
+        after_help = "Example: moduli completions bash > ~/.local/share/bash-completion/completions/moduli"
+    )]
+    Completions(CompletionOptions),
+    /// Write the manual pages, one per command.
+    #[command(after_help = "Example: moduli man ~/.local/share/man/man1")]
+    Man(ManOptions),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompletionOptions {
+    /// The shell.
+    pub(crate) shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ManOptions {
+    /// Folder for moduli.1, moduli-fit.1 and so on.
+    pub(crate) folder: PathBuf,
 }
 
 /// Parses a whole number from LOW to HIGH.

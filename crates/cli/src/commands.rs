@@ -7,6 +7,8 @@ pub(crate) mod fit;
 pub(crate) mod grasp;
 pub(crate) mod hand_check;
 pub(crate) mod info;
+pub(crate) mod library;
+pub(crate) mod manual;
 pub(crate) mod mesh;
 pub(crate) mod quality;
 pub(crate) mod synthesize;

@@ -6,6 +6,7 @@ mod failure;
 mod files;
 mod hands;
 mod input;
+mod library_folder;
 mod limits;
 mod mesh_folders;
 mod moved;
@@ -50,6 +51,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Synthesize(options) => commands::synthesize::run(options, common),
         Command::Hand(HandCommand::Check(options)) => commands::hand_check::run(options, common),
         Command::Grasp(options) => commands::grasp::run(options, common),
+        Command::Library(command) => commands::library::run(command, common),
         Command::Info(options) => commands::info::run(options, common),
+        Command::Completions(options) => commands::manual::completions(options),
+        Command::Man(options) => commands::manual::pages(options),
     }
 }

@@ -1,9 +1,7 @@
 //! The library that grasps are transferred from: the twelve objects with their best hand grasps.
 
-use grasp::{Contact, Convention};
-use moduli::records::library_grasp;
-use moduli::{Grasp, Grasps, Hand};
-use nalgebra::Point3;
+use grasp::Convention;
+use moduli::{Grasps, Hand, Kept};
 use record::{LibraryEntry, LibraryRecord};
 use shape::FitSettings;
 
@@ -24,10 +22,8 @@ pub struct LibrarySettings {
     pub convention: Convention,
     /// Hand poses around each object.
     pub poses: usize,
-    /// Grasps kept of each object, at most.
-    pub grasps: usize,
-    /// Two grasps of one object are at least this far apart ([`separation`]).
-    pub separation: f64,
+    /// Grasps kept of each object.
+    pub kept: Kept,
 }
 
 impl LibrarySettings {
@@ -41,8 +37,7 @@ impl LibrarySettings {
             fit: fit_settings(paper::DEGREE, None),
             convention,
             poses: paper::HAND_POSES,
-            grasps: 12,
-            separation: 0.25,
+            kept: Kept::default(),
         }
     }
 }
@@ -89,112 +84,8 @@ pub fn build(settings: &LibrarySettings) -> Result<LibraryRecord, ExperimentErro
 }
 
 fn entry(fitted: &FittedScan, ranked: &Grasps, settings: &LibrarySettings) -> LibraryEntry {
-    let radius = fitted.shape().mean_radius();
-    let spread = spread_out(ranked, radius, settings.separation, settings.grasps);
-    LibraryEntry {
-        id: fitted.id().to_owned(),
-        name: fitted.scan.name.clone(),
-        shape: fitted.object.to_record(),
-        grasps: spread.into_iter().filter_map(library_grasp).collect(),
-    }
-}
-
-/// The first grasps of a ranked list, at most `count`, without those nearer than `least` to an
-/// earlier one.
-fn spread_out(ranked: &Grasps, radius: f64, least: f64, count: usize) -> Vec<&Grasp> {
-    let mut kept: Vec<&Grasp> = Vec::with_capacity(count);
-    for grasp in ranked.iter() {
-        if kept.len() == count {
-            break;
-        }
-        let near = |other: &&Grasp| {
-            separation(grasp.contacts(), other.contacts(), radius).is_some_and(|d| d < least)
-        };
-        if !kept.iter().any(near) {
-            kept.push(grasp);
-        }
-    }
-    kept
-}
-
-/// The least d(g, g′) of Sec. III-C over all orders of the contacts, with lengths divided by
-/// `radius`; `None` for different numbers of contacts.
-///
-/// Grasps that differ only in the order of the fingers are the same to an object.
-pub fn separation(a: &[Contact], b: &[Contact], radius: f64) -> Option<f64> {
-    let scaled = |order: &mut dyn Iterator<Item = &Contact>| grasp::Grasp {
-        contacts: order
-            .map(|c| Contact {
-                position: c.position / radius,
-                ..*c
-            })
-            .collect(),
-        centre: Point3::origin(),
-    };
-    let first = scaled(&mut a.iter());
-    let distances = orders(b.len())
-        .into_iter()
-        .map(|order| grasp::distance(&first, &scaled(&mut order.iter().map(|&k| &b[k]))))
-        .collect::<Result<Vec<f64>, _>>()
-        .ok()?;
-    distances.into_iter().min_by(f64::total_cmp)
-}
-
-/// All permutations of 0 … count−1.
-fn orders(count: usize) -> Vec<Vec<usize>> {
-    let mut all = vec![Vec::new()];
-    for last in 0..count {
-        all = all
-            .into_iter()
-            .flat_map(|order: Vec<usize>| {
-                (0..=order.len()).map(move |place| {
-                    let mut longer = order.clone();
-                    longer.insert(place, last);
-                    longer
-                })
-            })
-            .collect();
-    }
-    all
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use nalgebra::{UnitVector3, Vector3};
-
-    fn contact(x: f64, y: f64) -> Contact {
-        let position = Point3::new(x, y, 0.01);
-        Contact {
-            position,
-            inward_normal: UnitVector3::new_normalize(-position.coords),
-        }
-    }
-
-    #[test]
-    fn the_order_of_fingers_and_the_unit_of_length_do_not_matter() {
-        let a = [
-            contact(0.03, 0.0),
-            contact(0.0, 0.04),
-            contact(-0.03, -0.01),
-        ];
-        let turned = [a[2], a[0], a[1]];
-        assert_eq!(separation(&a, &turned, 0.04), Some(0.0));
-        let mut moved = a;
-        moved[1].position.z += 0.02;
-        assert!((separation(&a, &moved, 0.04).unwrap() - 0.5).abs() <= 1e-12);
-        assert_eq!(separation(&a, &a[..2], 0.04), None);
-        let mut tilted = a;
-        tilted[0].inward_normal = Vector3::z_axis();
-        assert!(separation(&a, &tilted, 0.04).unwrap() > 1.0);
-    }
-
-    #[test]
-    fn there_are_six_orders_of_three() {
-        let mut all = orders(3);
-        all.sort();
-        all.dedup();
-        assert_eq!(all.len(), 6);
-        assert_eq!(orders(0), [Vec::<usize>::new()]);
-    }
+    let name = &fitted.scan.name;
+    fitted
+        .object
+        .library_entry(fitted.id(), name, ranked, &settings.kept)
 }

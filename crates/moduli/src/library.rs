@@ -19,10 +19,10 @@ use crate::object::Object;
 use crate::records::stored_coefficients;
 
 /// Known objects with their best grasps.
-#[derive(Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Library {
-    bytes: &'static [u8],
-    record: OnceLock<LibraryRecord>,
+    builtin: bool,
+    own: Vec<LibraryRecord>,
 }
 
 /// How grasps are carried over from a library.
@@ -59,6 +59,8 @@ pub struct Neighbour {
     pub distance: f64,
     object: Object,
     grasps: Vec<LibraryGrasp>,
+    /// Name of the hand that made the grasps.
+    hand: String,
 }
 
 impl Neighbour {
@@ -72,8 +74,8 @@ impl Library {
     /// The library that moduli carries: twelve objects with grasps of the Schunk SDH.
     pub fn builtin() -> &'static Self {
         static BUILTIN: Library = Library {
-            bytes: fixtures::LIBRARY,
-            record: OnceLock::new(),
+            builtin: true,
+            own: Vec::new(),
         };
         &BUILTIN
     }
@@ -86,24 +88,38 @@ impl Library {
         Ok(Self::from_record(LibraryRecord::from_bytes(bytes)?))
     }
 
-    /// A library of the given entries.
+    /// A library of the given objects.
     pub fn from_record(record: LibraryRecord) -> Self {
-        Self {
-            bytes: &[],
-            record: OnceLock::from(record),
-        }
+        Self::default().with(record)
     }
 
-    /// The stored entries; decoded once.
+    /// Adds the objects of a record, which may have been made with another hand.
+    #[must_use]
+    pub fn with(mut self, record: LibraryRecord) -> Self {
+        self.own.push(record);
+        self
+    }
+
+    /// The stored objects: a record per call of [`Library::with`], after the built-in one where the
+    /// library began as that. The built-in record is decoded once.
     ///
     /// # Errors
-    /// The bytes are damaged.
-    pub fn record(&self) -> Result<&LibraryRecord, Error> {
-        if let Some(record) = self.record.get() {
-            return Ok(record);
+    /// The bytes of the built-in library are damaged.
+    pub fn records(&self) -> Result<Vec<&LibraryRecord>, Error> {
+        static BUILTIN: OnceLock<LibraryRecord> = OnceLock::new();
+        let mut records = Vec::with_capacity(1 + self.own.len());
+        if self.builtin {
+            let decoded = match BUILTIN.get() {
+                Some(decoded) => decoded,
+                None => {
+                    let record = LibraryRecord::from_bytes(fixtures::LIBRARY)?;
+                    BUILTIN.get_or_init(|| record)
+                }
+            };
+            records.push(decoded);
         }
-        let record = LibraryRecord::from_bytes(self.bytes)?;
-        Ok(self.record.get_or_init(|| record))
+        records.extend(&self.own);
+        Ok(records)
     }
 
     /// The known objects nearest to an object by d (Sec. III-A), the nearest first.
@@ -117,15 +133,17 @@ impl Library {
             error,
         };
         let mut order = Vec::new();
-        for entry in &self.record()?.entries {
-            let other = stored_coefficients(&entry.shape).map_err(|e| damaged(entry, e))?;
-            order.push((entry, beta.distance(&other)));
+        for record in self.records()? {
+            for entry in &record.entries {
+                let other = stored_coefficients(&entry.shape).map_err(|e| damaged(entry, e))?;
+                order.push((entry, &record.hand, beta.distance(&other)));
+            }
         }
-        order.sort_by(|a, b| a.1.total_cmp(&b.1));
+        order.sort_by(|a, b| a.2.total_cmp(&b.2));
         order
             .into_par_iter()
             .take(count)
-            .map(|(entry, distance)| {
+            .map(|(entry, hand, distance)| {
                 let object = Object::from_record(&entry.shape).map_err(|error| match error {
                     Error::Stored(error) => damaged(entry, error),
                     other => other,
@@ -136,6 +154,7 @@ impl Library {
                     distance,
                     object: object.named(&entry.id),
                     grasps: entry.grasps.clone(),
+                    hand: hand.clone(),
                 })
             })
             .collect()
@@ -149,10 +168,7 @@ impl Library {
     pub fn transfer_to(&self, measure: &Measure<'_>, hand: &Hand) -> Result<Grasps, Error> {
         let options = TransferOptions::default();
         let neighbours = self.nearest(measure.object(), options.neighbours)?;
-        let mut carried = carry(measure, &neighbours, options.grasps, &|| {})?;
-        if self.record()?.hand != hand.name() {
-            carried.iter_mut().for_each(|c| c.hand = None);
-        }
+        let carried = carry(measure, hand, &neighbours, options.grasps, &|| {})?;
         let mut kept = best(carried, options.keep);
         give_hands(measure, hand, &mut kept, &options.search, &|| {})?;
         Ok(Grasps {
@@ -166,6 +182,7 @@ impl Library {
 /// of rayon's pool; `done` is called once per grasp.
 pub(crate) fn carry(
     measure: &Measure<'_>,
+    hand: &Hand,
     neighbours: &[Neighbour],
     grasps: usize,
     done: &(dyn Fn() + Sync),
@@ -187,7 +204,7 @@ pub(crate) fn carry(
     }
     jobs.into_par_iter()
         .map(|(neighbour, pair, grasp, directions)| {
-            let carried = carry_one(measure, pair, neighbour, grasp, &directions);
+            let carried = carry_one(measure, hand, pair, neighbour, grasp, &directions);
             done();
             carried.map_err(|error| Error::Transfer {
                 from: neighbour.object.name().to_owned(),
@@ -207,6 +224,7 @@ fn end(object: &Object) -> TransferEnd<'_> {
 
 fn carry_one(
     measure: &Measure<'_>,
+    hand: &Hand,
     pair: &Transfer,
     neighbour: &Neighbour,
     grasp: &LibraryGrasp,
@@ -216,10 +234,12 @@ fn carry_one(
     let naive = pair.naive(directions)?.quality;
     let contacts = contacts_on(pair.target(), &arrived.directions);
     let held = contacts_on(pair.source(), directions);
-    let hand = HandState {
+    // Poses and joints of another hand say nothing of this one's.
+    let same_hand = neighbour.hand == hand.name();
+    let state = same_hand.then(|| HandState {
         object_from_palm: carried_pose(&grasp.centred_from_palm(), &held, &contacts),
         joints: grasp.joints_rad.clone(),
-    };
+    });
     let source = Source::Transfer {
         from: neighbour.name.clone(),
         shape_distance: neighbour.distance,
@@ -228,6 +248,6 @@ fn carry_one(
     };
     Ok(CarriedGrasp {
         grasp: measure.grasp_of(arrived.directions, contacts, arrived.quality, source)?,
-        hand: Some(hand),
+        hand: state,
     })
 }

@@ -157,6 +157,13 @@ impl Object {
         }
     }
 
+    /// Adds sentences that the user should know, to be kept with every result on this object.
+    #[must_use]
+    pub fn with_warnings(mut self, warnings: impl IntoIterator<Item = String>) -> Self {
+        self.report.warnings.extend(warnings);
+        self
+    }
+
     /// Name of the object.
     pub fn name(&self) -> &str {
         &self.name

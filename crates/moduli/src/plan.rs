@@ -128,11 +128,7 @@ impl Plan {
         let neighbours = library.nearest(measure.object(), options.neighbours)?;
         let total = options.grasps * neighbours.len();
         let step = counter(Stage::Transfer, total, progress);
-        let mut all = carry(measure, &neighbours, options.grasps, &step)?;
-        if library.record()?.hand != hand.name() {
-            // Poses and joints of another hand say nothing of this one's.
-            all.iter_mut().for_each(|c| c.hand = None);
-        }
+        let all = carry(measure, hand, &neighbours, options.grasps, &step)?;
         let mut counts = TransferCounts {
             neighbours: neighbours.iter().map(Neighbour::described).collect(),
             all: all.len(),

@@ -21,6 +21,8 @@ pub enum Kind {
     Library,
     /// A [`crate::SphericalRecord`].
     Spherical,
+    /// A [`crate::LibraryObjectRecord`].
+    LibraryObject,
 }
 
 impl Kind {
@@ -29,13 +31,14 @@ impl Kind {
             Kind::Shape => 1,
             Kind::Library => 2,
             Kind::Spherical => 3,
+            Kind::LibraryObject => 4,
         }
     }
 
     /// The version that is written, and the only one that is read.
     fn version(self) -> u16 {
         match self {
-            Kind::Shape | Kind::Library | Kind::Spherical => 1,
+            Kind::Shape | Kind::Library | Kind::Spherical | Kind::LibraryObject => 1,
         }
     }
 
@@ -44,13 +47,19 @@ impl Kind {
             Kind::Shape => "shape",
             Kind::Library => "library",
             Kind::Spherical => "spherical shape",
+            Kind::LibraryObject => "library object",
         }
     }
 
     fn from_code(code: u16) -> Option<Self> {
-        [Kind::Shape, Kind::Library, Kind::Spherical]
-            .into_iter()
-            .find(|kind| kind.code() == code)
+        [
+            Kind::Shape,
+            Kind::Library,
+            Kind::Spherical,
+            Kind::LibraryObject,
+        ]
+        .into_iter()
+        .find(|kind| kind.code() == code)
     }
 }
 

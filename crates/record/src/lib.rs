@@ -1,7 +1,7 @@
 //! The file types of moduli: what is stored, each with a version.
 //!
-//! - [`ShapeRecord`], [`SphericalRecord`] and [`LibraryRecord`] are binary files. [`envelope`] puts a header in front of
-//!   them that names the kind and the version and carries a checksum of the body.
+//! - [`ShapeRecord`], [`SphericalRecord`], [`LibraryRecord`] and [`LibraryObjectRecord`] are binary
+//!   files. [`envelope`] puts a header in front of them that names the kind and the version and carries a checksum of the body.
 //! - [`GraspsFile`] is `grasps.json`; [`isaac_grasps`] writes its grasps as YAML for Isaac Sim.
 //!
 //! This crate depends on no other crate of the project, so a program that only reads files needs
@@ -35,6 +35,6 @@ pub mod spherical_record;
 pub use envelope::{EnvelopeError, Kind};
 pub use grasps::{GraspRecord, GraspsFile, GraspsFileError};
 pub use isaac::isaac_grasps;
-pub use library::{LibraryEntry, LibraryGrasp, LibraryRecord};
+pub use library::{LibraryEntry, LibraryGrasp, LibraryObjectRecord, LibraryRecord};
 pub use shape_record::ShapeRecord;
 pub use spherical_record::SphericalRecord;

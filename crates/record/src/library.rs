@@ -48,6 +48,33 @@ pub struct LibraryGrasp {
     pub joints_rad: Vec<f64>,
 }
 
+/// One known object in a file of its own, as a user's library folder holds it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LibraryObjectRecord {
+    /// Digest of everything that the object was made from: the same digest gives the same object.
+    pub made_from: String,
+    /// The library that holds this one object.
+    pub library: LibraryRecord,
+}
+
+impl LibraryObjectRecord {
+    /// The bytes of the file.
+    ///
+    /// # Errors
+    /// The record cannot be encoded, or is larger than 256 MiB.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, EnvelopeError> {
+        envelope::encode(Kind::LibraryObject, self)
+    }
+
+    /// Reads the bytes of such a file; the numbers in it are not checked.
+    ///
+    /// # Errors
+    /// The bytes are not a file of this kind of a version that is read, or are damaged.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, EnvelopeError> {
+        envelope::decode(Kind::LibraryObject, bytes)
+    }
+}
+
 impl LibraryGrasp {
     /// Pose of the palm in the centred frame.
     ///

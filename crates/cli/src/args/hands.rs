@@ -95,11 +95,16 @@ pub(crate) struct HandCheckOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct GraspOptions {
-    /// A cloud or a mesh; by default a built-in object that is not in the library.
-    pub(crate) cloud: Option<PathBuf>,
-    /// Folder for grasps.json, grasps.yaml and index.html; out/NAME by default.
+    /// Clouds or meshes; by default a built-in object that is not in the library.
+    pub(crate) clouds: Vec<PathBuf>,
+    /// Folder for grasps.json, grasps.yaml and index.html, out/NAME by default; with several clouds, the
+    /// folder that holds a folder per cloud, out by default.
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
+    /// Folder with known objects of your own, as `moduli library add` makes it. They are used beside the
+    /// built-in ones.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) library: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) fit: CloudOptions,
     #[command(flatten)]

@@ -25,8 +25,8 @@ pub(crate) fn run(options: &DistanceOptions, common: &Common) -> Result<(), Fail
         ));
     }
     if shapes.len() == 1 {
-        let library = Library::builtin().record().map_err(Failure::library)?;
-        for entry in &library.entries {
+        let records = Library::builtin().records().map_err(Failure::library)?;
+        for entry in records.iter().flat_map(|record| &record.entries) {
             let beta = stored_coefficients(&entry.shape)
                 .map_err(|e| Failure::other(format!("{}: {e}", entry.id)))?;
             shapes.push((format!("{} {}", entry.id, entry.name), beta));

@@ -1,12 +1,15 @@
 //! `moduli grasp`: a cloud in, ranked grasps and a page out.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use grasp::Convention;
 use hand::Hand;
 use indicatif::ProgressBar;
-use moduli::{HandSearch, Library, Plan, Poses, Progress, Stage, TransferOptions};
+use moduli::{
+    HandSearch, Library, Measure, Plan, Planned, Poses, Progress, Stage, TransferOptions,
+};
 use record::GraspsFile;
 use serde::Serialize;
 use shape::PointCloud;
@@ -14,7 +17,8 @@ use shape::PointCloud;
 use crate::args::{Common, GraspOptions};
 use crate::failure::Failure;
 use crate::outcomes::{reasons, sentence, why_none};
-use crate::{hands, input, output, page, result};
+use crate::result::Written;
+use crate::{hands, input, library_folder, output, page, result};
 
 /// The built-in object that stands for "never seen before".
 const UNSEEN: &str = "U1";
@@ -50,33 +54,120 @@ struct GraspLine {
 }
 
 pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure> {
-    let start = Instant::now();
     let convention = input::convention(&options.convention)?;
     let hand = hands::load(&options.hand)?;
-    let (name, cloud) = object(options, common)?;
-    let points = cloud.points().len();
-    let (object, _) = input::fitted(&cloud, &name, &options.fit)?;
-    let refused = |e: moduli::Error| Failure::refused(format!("{name}: {e}"));
-    let measure = object.measure(&convention).map_err(refused)?;
-    let bars = Bars::new(common.quiet);
-    let planned = plan(options, common)
-        .run(&measure, &hand, Library::builtin(), &|p| bars.show(p))
-        .map_err(refused)?;
-    bars.finish();
+    let (library, warnings) = library_folder::beside_builtin(options.library.as_deref())?;
+    warnings.iter().for_each(output::warn);
+    let shared = Shared {
+        options,
+        common,
+        convention,
+        hand,
+        library,
+        warnings,
+    };
+    let folders = folders(options)?;
+    if options.clouds.is_empty() {
+        let (name, cloud) = builtin_object(common)?;
+        let folder = options.output.clone();
+        return shared.grasp(
+            &name,
+            &cloud,
+            &folder.unwrap_or_else(|| default_folder(&name)),
+        );
+    }
+    let mut failures = Vec::new();
+    for (path, folder) in options.clouds.iter().zip(&folders) {
+        let done = input::cloud(path, &options.fit, common.seed)
+            .and_then(|cloud| shared.grasp(&input::stem(path), &cloud, folder));
+        failures.extend(done.err());
+    }
+    Failure::all(failures)
+}
 
-    let folder = options
-        .output
-        .clone()
-        .unwrap_or_else(|| PathBuf::from("out").join(&name));
-    let summary = sentence(&planned.outcomes);
-    let facts = vec![format!("Hand {}: {summary}.", hand.name())];
-    let ranked = &planned.grasps;
-    let written = result::write(&folder, &measure, Some(&cloud), &hand, ranked, facts)?;
+/// `out/NAME`.
+fn default_folder(name: &str) -> PathBuf {
+    PathBuf::from("out").join(name)
+}
+
+/// The folder of each cloud's results; two clouds never share one.
+fn folders(options: &GraspOptions) -> Result<Vec<PathBuf>, Failure> {
+    let folder = |cloud: &PathBuf| match &options.output {
+        Some(output) if options.clouds.len() == 1 => output.clone(),
+        Some(output) => output.join(input::stem(cloud)),
+        None => default_folder(&input::stem(cloud)),
+    };
+    let folders: Vec<PathBuf> = options.clouds.iter().map(folder).collect();
+    let results: Vec<PathBuf> = folders.iter().map(|f| f.join("grasps.json")).collect();
+    run::check_results(&results, &options.clouds)?;
+    Ok(folders)
+}
+
+/// What all clouds of one call have in common.
+struct Shared<'a> {
+    options: &'a GraspOptions,
+    common: &'a Common,
+    convention: Convention,
+    hand: Hand,
+    library: Library,
+    /// What is to be said about the library.
+    warnings: Vec<String>,
+}
+
+impl Shared<'_> {
+    /// Plans grasps on a cloud and writes the results into a folder.
+    fn grasp(&self, name: &str, cloud: &PointCloud, folder: &Path) -> Result<(), Failure> {
+        let start = Instant::now();
+        let (options, common, hand) = (self.options, self.common, &self.hand);
+        let (object, _) = input::fitted(cloud, name, &options.fit)?;
+        let object = object.with_warnings(self.warnings.iter().cloned());
+        let refused = |e: moduli::Error| Failure::refused(format!("{name}: {e}"));
+        let measure = object.measure(&self.convention).map_err(refused)?;
+        let bars = Bars::new(common.quiet);
+        let planned = plan(options, common)
+            .run(&measure, hand, &self.library, &|p| bars.show(p))
+            .map_err(refused)?;
+        bars.finish();
+
+        let summary = sentence(&planned.outcomes);
+        let facts = vec![format!("Hand {}: {summary}.", hand.name())];
+        let ranked = &planned.grasps;
+        let written = result::write(folder, &measure, Some(cloud), hand, ranked, facts)?;
+        let seconds = start.elapsed().as_secs_f64();
+        let line = line(&measure, hand, cloud, &planned, &written, seconds);
+        if common.json {
+            output::say_json(&line)?;
+        } else {
+            line.say_found(hand, &summary);
+            written.print_table();
+            line.say_end();
+            written.print_paths();
+        }
+        if ranked.is_empty() {
+            return Err(Failure::refused(format!(
+                "{name}: no force-closed grasp found; {}; more --poses or --neighbours may help",
+                why_none(&planned.outcomes, hand)
+            )));
+        }
+        Ok(())
+    }
+}
+
+/// The result of one cloud.
+fn line(
+    measure: &Measure<'_>,
+    hand: &Hand,
+    cloud: &PointCloud,
+    planned: &Planned,
+    written: &Written,
+    seconds: f64,
+) -> GraspLine {
+    let object = measure.object();
     let transferred = &planned.transferred;
     let (r_min, r_max) = object.shape().radius_bounds();
-    let line = GraspLine {
-        object: name.clone(),
-        points,
+    GraspLine {
+        object: object.name().to_owned(),
+        points: cloud.points().len(),
         r_min_certified_m: r_min,
         r_max_certified_m: r_max,
         hand: hand.name().to_owned(),
@@ -86,34 +177,19 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
         transferred_with_hand: transferred.with_hand,
         transferred_met: transferred.met,
         transferred_of_other_count: transferred.of_other_count,
-        poses: options.poses,
+        poses: planned.outcomes.total(),
         synthesized: planned.outcomes.stable,
         rejected: reasons(&planned.outcomes).into_iter().collect(),
-        grasps: ranked.len(),
-        best: ranked.first().map(|g| g.quality()),
-        contact_to_cloud_max_m: farthest_contact(&written.file, &cloud),
-        convention: convention.name.clone(),
+        grasps: planned.grasps.len(),
+        best: planned.grasps.first().map(|g| g.quality()),
+        contact_to_cloud_max_m: farthest_contact(&written.file, cloud),
+        convention: measure.rule().name.clone(),
         grasps_json: written.grasps_json.display().to_string(),
         grasps_yaml: written.grasps_yaml.display().to_string(),
         index_html: written.index_html.display().to_string(),
         warnings: object.report().warnings.clone(),
-        seconds: start.elapsed().as_secs_f64(),
-    };
-    if common.json {
-        output::say_json(&line)?;
-    } else {
-        line.say_found(&hand, &summary);
-        written.print_table();
-        line.say_end();
-        written.print_paths();
+        seconds,
     }
-    if ranked.is_empty() {
-        return Err(Failure::refused(format!(
-            "{name}: no force-closed grasp found; {}; more --poses or --neighbours may help",
-            why_none(&planned.outcomes, &hand)
-        )));
-    }
-    Ok(())
 }
 
 /// The plan that the options describe.
@@ -179,14 +255,8 @@ impl Bars {
     }
 }
 
-/// The cloud given, or the built-in unseen object.
-fn object(options: &GraspOptions, common: &Common) -> Result<(String, PointCloud), Failure> {
-    if let Some(path) = &options.cloud {
-        return Ok((
-            input::stem(path),
-            input::cloud(path, &options.fit, common.seed)?,
-        ));
-    }
+/// The built-in object that no library holds.
+fn builtin_object(common: &Common) -> Result<(String, PointCloud), Failure> {
     let unseen = catalogue::by_id(UNSEEN)
         .ok_or_else(|| Failure::other(format!("the built-in object {UNSEEN} is missing")))?;
     let cloud = PointCloud::new(unseen.scan(common.seed))

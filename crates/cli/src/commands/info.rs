@@ -4,7 +4,10 @@ use std::path::Path;
 
 use moduli::SphericalObject;
 use moduli::records::stored_shape;
-use record::{GraspsFile, GraspsFileError, Kind, LibraryRecord, ShapeRecord, SphericalRecord};
+use record::{
+    GraspsFile, GraspsFileError, Kind, LibraryObjectRecord, LibraryRecord, ShapeRecord,
+    SphericalRecord,
+};
 use serde_json::{Map, Value, json};
 use shape::io::{Geometry, Loaded};
 
@@ -52,6 +55,10 @@ fn facts(path: &Path) -> Result<Vec<Fact>, Failure> {
         Some(Kind::Library) => {
             let record = LibraryRecord::from_bytes(&bytes).map_err(|e| refused(&e))?;
             Ok(library_facts(&record))
+        }
+        Some(Kind::LibraryObject) => {
+            let record = LibraryObjectRecord::from_bytes(&bytes).map_err(|e| refused(&e))?;
+            Ok(library_facts(&record.library))
         }
         None => match GraspsFile::from_json(&bytes) {
             Ok(file) => Ok(grasps_facts(&file)),

@@ -413,3 +413,27 @@ fn coordinates_of_no_frame_and_contacts_in_millimetres_are_named() {
     let named = |w: &serde_json::Value| w.as_str().unwrap().contains("millimetres");
     assert!(warnings.iter().any(named), "{warnings:?}");
 }
+
+#[test]
+fn every_command_has_completions_a_manual_page_and_an_example() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let pages = stdout(&moduli(folder, &["man", "man"]));
+    let commands = ["fit", "grasp", "hand-check", "library-add", "quality"];
+    for command in commands {
+        assert!(pages.contains(&format!("moduli-{command}.1")), "{pages}");
+    }
+    for page in pages.lines() {
+        let text = std::fs::read_to_string(folder.join(page)).unwrap();
+        assert!(text.contains(".SH NAME"), "{page}");
+        let has_commands = text.contains(".SH SUBCOMMANDS");
+        assert!(has_commands || text.contains("Example: moduli"), "{page}");
+    }
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let text = stdout(&moduli(folder, &["completions", shell]));
+        assert!(
+            text.contains("synthesize") && text.contains("library"),
+            "{shell}"
+        );
+    }
+}

@@ -80,7 +80,7 @@ fn the_stored_library_is_usable_and_its_grasps_are_spread_out() {
         let shape = stored_shape(&entry.shape).unwrap();
         let (low, high) = shape.radius_bounds();
         assert!(low > 0.005 && high < 0.2, "{}: {low} to {high}", entry.id);
-        assert_eq!(entry.grasps.len(), settings.grasps, "{}", entry.id);
+        assert_eq!(entry.grasps.len(), settings.kept.grasps, "{}", entry.id);
         assert!(entry.grasps.is_sorted_by(|a, b| a.quality >= b.quality));
         let radius = shape.mean_radius();
         let contacts: Vec<_> = entry
@@ -90,8 +90,12 @@ fn the_stored_library_is_usable_and_its_grasps_are_spread_out() {
             .collect();
         for (k, a) in contacts.iter().enumerate() {
             for b in &contacts[..k] {
-                let apart = experiments::library::separation(a, b, radius).unwrap();
-                assert!(apart >= settings.separation - 1e-9, "{}: {apart}", entry.id);
+                let apart = moduli::separation(a, b, radius).unwrap();
+                assert!(
+                    apart >= settings.kept.separation - 1e-9,
+                    "{}: {apart}",
+                    entry.id
+                );
             }
         }
     }
