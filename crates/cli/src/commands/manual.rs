@@ -27,7 +27,7 @@ pub(crate) fn pages(options: &ManOptions) -> Result<(), Failure> {
 fn write_page(command: &clap::Command, options: &ManOptions) -> Result<(), Failure> {
     let name = command.get_display_name().unwrap_or("moduli").to_owned();
     let mut text = Vec::new();
-    Man::new(command.clone().name(name.clone()))
+    Man::new(command.clone())
         .render(&mut text)
         .map_err(|e| Failure::other(format!("cannot write the manual: {e}")))?;
     let path = options.folder.join(format!("{name}.1"));
