@@ -41,7 +41,7 @@ pub(crate) fn read(folder: &Path) -> Result<LibraryFolder, Failure> {
         }
     }
     files.sort();
-    let read: Vec<Result<LibraryObjectRecord, String>> = files.par_iter().map(object).collect();
+    let read: Vec<Result<LibraryObjectRecord, String>> = files.par_iter().map(|file| object(file)).collect();
     let (mut objects, mut warnings) = (Vec::new(), Vec::new());
     for (file, object) in files.iter().zip(read) {
         match object {
@@ -56,7 +56,7 @@ pub(crate) fn read(folder: &Path) -> Result<LibraryFolder, Failure> {
 }
 
 /// A stored object whose surface is proved again and whose grasps are whole; what is wrong otherwise.
-fn object(path: &PathBuf) -> Result<LibraryObjectRecord, String> {
+fn object(path: &Path) -> Result<LibraryObjectRecord, String> {
     let bytes = input::read(path).map_err(|e| e.message)?;
     let stored = LibraryObjectRecord::from_bytes(&bytes).map_err(|e| e.to_string())?;
     for entry in &stored.library.entries {
