@@ -50,7 +50,7 @@ pub(crate) fn cloud(path: &Path, options: &CloudOptions, seed: u64) -> Result<Po
     for warning in &loaded.warnings {
         let hint = match warning {
             Warning::Unit { .. } => " (--unit mm, cm, m, in)",
-            Warning::Dropped { .. } => "",
+            _ => "",
         };
         warn(format!("{}: {warning}{hint}", path.display()));
     }

@@ -34,8 +34,8 @@ pub enum MeshFileError {
     Load(#[from] LoadError),
 }
 
-/// Vertices of an STL, OBJ, PLY or OFF mesh that a face uses, in the file's unit and order; all
-/// vertices of a file without faces.
+/// Vertices of a mesh that a face uses, in the file's unit and order; all vertices of a file without
+/// faces.
 ///
 /// The content decides the format; `name`, the file's name, decides where the content leaves it open
 /// ([`shape::io::read_cloud`]).
@@ -55,14 +55,7 @@ pub fn mesh_vertices(bytes: &[u8], name: &str) -> Result<Vec<Point3<f64>>, MeshF
     }
     let vertices = match loaded.geometry {
         Geometry::Points(points) => points,
-        Geometry::Mesh(mesh) => {
-            let mut used = vec![false; mesh.vertices.len()];
-            for &corner in mesh.triangles.iter().flatten() {
-                used[corner as usize] = true;
-            }
-            let of_faces = mesh.vertices.into_iter().zip(used);
-            of_faces.filter(|(_, used)| *used).map(|(v, _)| v).collect()
-        }
+        Geometry::Mesh(mesh) => mesh.vertices,
     };
     if vertices.len() > MAX_MESH_VERTICES {
         return Err(MeshFileError::TooMany {

@@ -61,6 +61,7 @@ impl Object {
     /// The bytes are not of that format, or the cloud has no proved surface.
     pub fn from_bytes(bytes: &[u8], format: Format) -> Result<Self, Error> {
         let loaded = read_cloud(bytes, &format.to_string())?;
+        let of_file: Vec<String> = loaded.warnings.iter().map(ToString::to_string).collect();
         let mut generator = ChaCha8Rng::seed_from_u64(0);
         let cloud = loaded.cloud(Loaded::MESH_SAMPLES, &mut generator)?;
         let settings = FitSettings {
@@ -68,7 +69,6 @@ impl Object {
             lambda: None,
         };
         let mut object = Self::from_cloud("object", &cloud, &settings)?;
-        let of_file = loaded.warnings.iter().map(ToString::to_string);
         object.report.warnings.splice(0..0, of_file);
         Ok(object)
     }

@@ -1,87 +1,183 @@
-//! Which format bytes have: what they begin with counts more than the name of their file.
+//! What the first bytes of a file say about its format, whatever its name says.
 
-use super::error::{Format, LoadError};
+use super::format::Format;
+use super::stl;
 
-/// Bytes among which the kind of a file shows.
-const HEAD: usize = 1024;
-
-/// The format of a file by its first bytes; by its extension where they leave it open.
-///
-/// # Errors
-/// The file is of a kind that is not read, such as a Git LFS pointer or a web page, or of none that is
-/// known.
-pub(super) fn recognised(bytes: &[u8], extension: &str) -> Result<Format, LoadError> {
-    let extension = extension.trim_start_matches('.');
-    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]).to_ascii_lowercase();
-    let head = head.trim_start_matches('\u{feff}').trim_start();
-    if is_binary_stl(bytes) {
-        return Ok(Format::Stl);
-    }
-    refuse_foreign(head, extension)?;
-    let by_name = Format::from_extension(extension);
-    let begins = [
-        ("ply\n", Format::Ply),
-        ("ply\r", Format::Ply),
-        ("# .pcd", Format::Pcd),
-        ("solid", Format::Stl),
-    ];
-    let by_content = begins.iter().find(|(start, _)| head.starts_with(start));
-    if let Some((_, format)) = by_content {
-        return Ok(*format);
-    }
-    // These words may begin lines of plain text, so a name that says text counts more.
-    if !matches!(by_name, Some(Format::Xyz | Format::Obj)) {
-        let lines = || bytes.split(|byte| *byte == b'\n');
-        if head.starts_with("off") {
-            return Ok(Format::Off);
-        }
-        if by_name != Some(Format::Pcd) && lines().any(|line| line.starts_with(b"v ")) {
-            return Ok(Format::Obj);
-        }
-        if by_name.is_none() && head.starts_with("version") {
-            return Ok(Format::Pcd);
-        }
-    }
-    by_name.ok_or_else(|| LoadError::Unsupported {
-        extension: extension.to_owned(),
-    })
+/// What the content is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Content {
+    /// A format that is read, by a mark that no other format has.
+    Known(Format),
+    /// A format that is read, by the look of its lines; the name of the file goes first.
+    Likely(Format),
+    /// A format that is recognised to say so, and what to do.
+    Foreign(&'static str, &'static str),
+    /// Nothing is recognised.
+    Unknown,
 }
 
-/// Kinds of files that are known and not read, with their true names.
-fn refuse_foreign(head: &str, extension: &str) -> Result<(), LoadError> {
-    let foreign = |kind, advice| Err(LoadError::Foreign { kind, advice });
-    if head.starts_with("version https://git-lfs") {
-        return foreign(
+/// How much of the content is looked at.
+const HEAD: usize = 4096;
+const CONVERT_MESH: &str = "save it as STL, OBJ, PLY, OFF or GLB";
+const CONVERT_CLOUD: &str = "save it as PLY, PCD or XYZ";
+const NO_OBJECT: &str = "expected a cloud or a mesh";
+const DOWNLOAD: &str = "download the file itself, not the page that shows it";
+
+/// Marks at the first byte.
+const MAGIC: [(&[u8], Content); 20] = [
+    (b"\x93NUMPY", Content::Known(Format::Npy)),
+    (b"PK\x03\x04", Content::Known(Format::Npz)),
+    (b"PK\x05\x06", Content::Known(Format::Npz)),
+    (b"glTF", Content::Known(Format::Gltf)),
+    (b"# .PCD", Content::Known(Format::Pcd)),
+    (
+        b"version https://git-lfs.github.com",
+        Content::Foreign(
             "a Git LFS pointer",
             "fetch the file itself with `git lfs pull`",
-        );
+        ),
+    ),
+    (
+        b"LASF",
+        Content::Foreign("a LAS or LAZ cloud", CONVERT_CLOUD),
+    ),
+    (b"ASTM-E57", Content::Foreign("an E57 cloud", CONVERT_CLOUD)),
+    (b"#VRML", Content::Foreign("a VRML file", CONVERT_MESH)),
+    (b"#X3D", Content::Foreign("an X3D file", CONVERT_MESH)),
+    (
+        b"ISO-10303-21",
+        Content::Foreign("a STEP model", CONVERT_MESH),
+    ),
+    (
+        b"Kaydara FBX",
+        Content::Foreign("an FBX scene", CONVERT_MESH),
+    ),
+    (
+        b"BLENDER",
+        Content::Foreign("a Blender scene", CONVERT_MESH),
+    ),
+    (b"DRACO", Content::Foreign("a Draco mesh", CONVERT_MESH)),
+    (b"\x89HDF", Content::Foreign("an HDF5 file", CONVERT_CLOUD)),
+    (b"\x89PNG", Content::Foreign("a PNG picture", NO_OBJECT)),
+    (
+        b"\xFF\xD8\xFF",
+        Content::Foreign("a JPEG picture", NO_OBJECT),
+    ),
+    (b"%PDF", Content::Foreign("a PDF document", NO_OBJECT)),
+    (
+        b"\x1f\x8b",
+        Content::Foreign("compressed by gzip", "unpack it first"),
+    ),
+    (b"#usda", Content::Foreign("a USD scene", CONVERT_MESH)),
+];
+
+/// Elements of XML, and what a file with such an element is.
+const XML: [(&str, &str, &str); 8] = [
+    ("<collada", "a Collada (DAE) file", CONVERT_MESH),
+    ("<!doctype html", "a web page (HTML)", DOWNLOAD),
+    ("<html", "a web page (HTML)", DOWNLOAD),
+    ("<robot", "a URDF", NO_OBJECT),
+    ("<mujoco", "an MJCF model of MuJoCo", NO_OBJECT),
+    ("<sdf", "an SDF model", NO_OBJECT),
+    ("<x3d", "an X3D file", CONVERT_MESH),
+    ("<vtkfile", "a VTK file", CONVERT_MESH),
+];
+
+/// Recognises the content by its first bytes.
+pub(super) fn recognise(bytes: &[u8]) -> Content {
+    let wide = bytes.starts_with(b"\xFF\xFE") || bytes.starts_with(b"\xFE\xFF");
+    if wide {
+        return Content::Foreign("text in UTF-16", "save it as UTF-8");
     }
-    if head.starts_with("<!doctype html") || head.starts_with("<html") {
-        return foreign("a web page (HTML)", "download the file itself");
+    // The words of the header of a binary STL are free.
+    if stl::is_binary(bytes) {
+        return Content::Known(Format::Stl);
     }
-    let convert = "convert it to PLY, OBJ, STL or OFF";
-    if head.contains("<collada") {
-        return foreign("a Collada (DAE) file", convert);
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    if let Some((_, content)) = MAGIC.iter().find(|(mark, _)| bytes.starts_with(mark)) {
+        return *content;
     }
-    if head.starts_with("gltf") {
-        return foreign("a binary glTF (GLB) file", convert);
+    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]);
+    let text = head.trim_start();
+    let lower = text.to_ascii_lowercase();
+    if lower.starts_with('<') {
+        let found = XML.iter().find(|(mark, _, _)| lower.contains(mark));
+        let (_, what, advice) = found.unwrap_or(&("", "an XML file", NO_OBJECT));
+        return Content::Foreign(what, advice);
     }
-    let vrml = ["wrl", "vrml", "wrz"];
-    if head.starts_with("#vrml") || vrml.iter().any(|v| extension.eq_ignore_ascii_case(v)) {
-        return foreign("a VRML file", convert);
+    if lower.starts_with("# vtk datafile") {
+        return Content::Foreign("a VTK file", CONVERT_MESH);
     }
-    Ok(())
+    if lower.starts_with('{') && lower.contains("\"asset\"") {
+        return Content::Known(Format::Gltf);
+    }
+    text_format(text, &lower)
 }
 
-/// Whether the length fits the number of triangles after the header of a binary STL.
-fn is_binary_stl(bytes: &[u8]) -> bool {
-    const HEADER: usize = 84;
-    const TRIANGLE: u64 = 50;
-    let Some(&[a, b, c, d]) = bytes.get(HEADER - 4..HEADER).and_then(<[u8]>::first_chunk) else {
-        return false;
+fn text_format(text: &str, lower: &str) -> Content {
+    let first = text.split(['\n', '\r']).next().unwrap_or_default();
+    let first = first.trim_end();
+    if first.eq_ignore_ascii_case("ply") {
+        return Content::Known(Format::Ply);
+    }
+    // A binary STL may begin with any words.
+    let solid = lower.starts_with("solid") && !has_binary(text);
+    if solid && (lower.contains("facet") || lower.contains("endsolid")) {
+        return Content::Known(Format::Stl);
+    }
+    let has_line = |key: &str| text.lines().any(|l| l.starts_with(key));
+    let fields = has_line("FIELDS ") || has_line("COLUMNS ");
+    if fields && has_line("DATA ") {
+        return Content::Known(Format::Pcd);
+    }
+    if !has_binary(text) && is_off(first) {
+        return Content::Known(Format::Off);
+    }
+    likely(text)
+}
+
+fn has_binary(text: &str) -> bool {
+    text.chars().any(|c| c.is_control() && !c.is_whitespace())
+}
+
+/// Whether a line is the keyword of OFF, with the counts behind it or not.
+fn is_off(line: &str) -> bool {
+    let letters = line.trim_start_matches(|c: char| c.is_ascii_alphabetic());
+    let word = line[..line.len() - letters.len()].to_ascii_uppercase();
+    let known = [
+        "OFF", "COFF", "NOFF", "CNOFF", "STOFF", "NCOFF", "STCOFF", "STNOFF",
+    ];
+    let counts = |c: char| c.is_ascii_digit() || c.is_whitespace();
+    let rest = letters.split('#').next().unwrap_or_default();
+    known.contains(&word.as_str()) && rest.chars().all(counts)
+}
+
+/// OBJ or columns of numbers, if all of the first lines look like it.
+fn likely(text: &str) -> Content {
+    let lines = text.lines().map(str::trim);
+    let lines = lines.filter(|l| !l.is_empty() && !l.starts_with('#') && !l.starts_with("//"));
+    // The last line may be cut off.
+    let lines: Vec<&str> = lines.take(20).collect();
+    let words = ["v", "vn", "vt", "f", "o", "g", "s", "mtllib", "usemtl", "l"];
+    let obj = |l: &&str| words.contains(&l.split_whitespace().next().unwrap_or_default());
+    let has_vertex = lines.iter().any(|l| l.starts_with("v "));
+    if has_vertex && lines.iter().all(|l| obj(&l)) {
+        return Content::Likely(Format::Obj);
+    }
+    let numbers = |l: &&str| {
+        let fields: Vec<&str> = l
+            .split([',', ';', ' ', '\t'])
+            .filter(|w| !w.is_empty())
+            .collect();
+        fields.len() >= 3 && fields.iter().all(|w| w.parse::<f64>().is_ok())
     };
-    let triangles = u64::from(u32::from_le_bytes([a, b, c, d]));
-    HEADER as u64 + TRIANGLE * triangles == bytes.len() as u64
+    let body = lines.get(1..lines.len().saturating_sub(1));
+    match body {
+        Some(body) if !body.is_empty() && body.iter().all(|l| numbers(&l)) => {
+            Content::Likely(Format::Xyz)
+        }
+        _ => Content::Unknown,
+    }
 }
 
 #[cfg(test)]
@@ -89,38 +185,39 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_content_counts_more_than_the_name() {
-        let cases: [(&[u8], &str, Format); 8] = [
-            (b"ply\nformat ascii 1.0\n", "stl", Format::Ply),
-            (b"# .PCD v0.7\n", "xyz", Format::Pcd),
-            (b"solid x\nfacet", "obj", Format::Stl),
-            (b"OFF\n3 1 0\n", "stl", Format::Off),
-            (b"# a\nv 0 0 0\n", "stl", Format::Obj),
-            (b"v 0 0 0\n", "", Format::Obj),
-            (b"offset x y\n1 2 3\n", "txt", Format::Xyz),
-            (b"1 2 3\n", ".CSV", Format::Xyz),
+    fn content_is_recognised_without_its_name() {
+        let cases: [(&[u8], Content); 9] = [
+            (b"\xEF\xBB\xBFply\r\nformat", Content::Known(Format::Ply)),
+            (b"SOLID a\nFACET", Content::Known(Format::Stl)),
+            (b"OFF262 520 0\n0 0 0", Content::Known(Format::Off)),
+            (b"off\n3 1 0\n", Content::Known(Format::Off)),
+            (
+                b"COLUMNS x y z\nPOINTS 1\nDATA ascii\n",
+                Content::Known(Format::Pcd),
+            ),
+            (b"v 0 0 0\nv 1 0 0\nf 1 2 1\n", Content::Likely(Format::Obj)),
+            (
+                b"x y z\n1 2 3\n4 5 6\n7 8 9\n",
+                Content::Likely(Format::Xyz),
+            ),
+            (b"office hours", Content::Unknown),
+            (b"", Content::Unknown),
         ];
-        for (bytes, extension, format) in cases {
-            assert_eq!(recognised(bytes, extension), Ok(format), "{extension}");
+        for (bytes, content) in cases {
+            assert_eq!(recognise(bytes), content);
         }
-        let mut binary = vec![0u8; 84 + 50];
-        binary[..5].copy_from_slice(b"solid");
-        binary[80] = 1;
-        assert_eq!(recognised(&binary, "obj"), Ok(Format::Stl));
     }
 
     #[test]
-    fn what_is_not_read_has_its_true_name() {
-        let said = |text: &str, extension| {
-            recognised(text.as_bytes(), extension)
-                .unwrap_err()
-                .to_string()
-        };
-        let pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
-        assert!(said(pointer, "stl").contains("git lfs pull"));
-        assert!(said("\n<!DOCTYPE html>\n<html>", "ply").contains("web page"));
-        assert!(said("<?xml version=\"1.0\"?>\n<COLLADA>", "dae").contains("DAE"));
-        assert!(said("#VRML V2.0 utf8", "ply").contains("VRML"));
-        assert!(said("1 2 3", "las").contains("`las`"));
+    fn foreign_files_are_named() {
+        let cases: [(&[u8], &str); 4] = [
+            (b"version https://git-lfs.github.com/spec/v1\n", "Git LFS"),
+            (b"\n<!DOCTYPE html><html>", "HTML"),
+            (b"<?xml version=\"1.0\"?><COLLADA xmlns=\"\">", "Collada"),
+            (b"\xFF\xFEa\0", "UTF-16"),
+        ];
+        for (bytes, name) in cases {
+            assert!(matches!(recognise(bytes), Content::Foreign(what, _) if what.contains(name)));
+        }
     }
 }

@@ -1,67 +1,20 @@
-//! The formats that are read, and why bytes are refused.
+//! Why bytes are refused.
 
-use std::fmt;
+use super::format::Format;
 
-use super::ply_error::PlyError;
-
-/// A file format for clouds or meshes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Format {
-    /// Polygon file format: ASCII, little and big endian.
-    Ply,
-    /// Point Cloud Library: ASCII, binary and compressed.
-    Pcd,
-    /// Three numbers a line, separated by blanks, commas or semicolons.
-    Xyz,
-    /// Wavefront.
-    Obj,
-    /// Stereolithography: ASCII and binary.
-    Stl,
-    /// Object file format of Geomview.
-    Off,
-}
-
-impl Format {
-    /// The format that a file-name extension stands for, with or without the dot, in any case.
-    pub fn from_extension(extension: &str) -> Option<Self> {
-        let extension = extension.trim_start_matches('.').to_ascii_lowercase();
-        Some(match extension.as_str() {
-            "ply" => Self::Ply,
-            "pcd" => Self::Pcd,
-            "xyz" | "csv" | "txt" | "asc" | "pts" => Self::Xyz,
-            "obj" => Self::Obj,
-            "stl" => Self::Stl,
-            "off" => Self::Off,
-            _ => return None,
-        })
-    }
-}
-
-impl fmt::Display for Format {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Ply => "PLY",
-            Self::Pcd => "PCD",
-            Self::Xyz => "XYZ",
-            Self::Obj => "OBJ",
-            Self::Stl => "STL",
-            Self::Off => "OFF",
-        })
-    }
-}
-
-/// Why bytes are neither a cloud nor a mesh. Lines and bytes count from 1 and from 0.
+/// Why bytes are neither a cloud nor a mesh. Lines are counted from 1, bytes from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LoadError {
-    /// Neither the extension nor the first bytes belong to a format that is read.
+    /// Neither the extension nor the content belongs to a format that is read.
     #[error(
-        "files of type `{extension}` are not supported; expected ply, pcd, xyz, csv, txt, obj, stl or off"
+        "files of type `{extension}` are not supported; expected {}",
+        Format::EXTENSIONS
     )]
     Unsupported {
         /// The extension given.
         extension: String,
     },
-    /// The bytes are of a kind that is known and not read.
+    /// The content is recognised and belongs to a format that is not read.
     #[error("this is {kind}, which is not read; {advice}")]
     Foreign {
         /// What the file is.
@@ -99,9 +52,16 @@ pub enum LoadError {
         /// What is there.
         found: String,
     },
-    /// A PLY file is damaged.
-    #[error(transparent)]
-    Ply(#[from] PlyError),
+    /// The file is well formed and holds something that is not read.
+    #[error("the {format} file has {what}; expected {expected}")]
+    Content {
+        /// The format.
+        format: Format,
+        /// What was found.
+        what: String,
+        /// What is read.
+        expected: String,
+    },
     /// Nothing finite is left.
     #[error("the {format} file has no finite point ({dropped} rows with NaN or infinite numbers)")]
     NoPoints {
@@ -123,6 +83,16 @@ impl LoadError {
         }
     }
 
+    /// A text that ends too early, at its last line.
+    pub(super) fn end_of_text(format: Format, line: usize, expected: &str) -> Self {
+        Self::Line {
+            format,
+            line,
+            expected: expected.to_owned(),
+            found: "the end of the file".to_owned(),
+        }
+    }
+
     /// Bytes that are not what they should be.
     pub(super) fn byte(format: Format, byte: usize, expected: String, found: String) -> Self {
         Self::Byte {
@@ -132,11 +102,20 @@ impl LoadError {
             found,
         }
     }
+
+    /// Something that is well formed and not read.
+    pub(super) fn content(format: Format, what: impl Into<String>, expected: &str) -> Self {
+        Self::Content {
+            format,
+            what: what.into(),
+            expected: expected.to_owned(),
+        }
+    }
 }
 
 /// Foreign text in one short line, between back quotes.
 pub(super) fn quoted(text: &str) -> String {
-    const LONGEST: usize = 60;
+    const LONGEST: usize = 80;
     if text.is_empty() {
         return "nothing".to_owned();
     }

@@ -5,7 +5,9 @@ use std::fmt;
 use nalgebra::Point3;
 use rand::Rng;
 
-use super::error::{Format, LoadError};
+use super::error::LoadError;
+use super::format::Format;
+use super::polygon;
 use crate::point_cloud::{CloudError, PointCloud};
 use crate::triangle_mesh::TriangleMesh;
 
@@ -17,7 +19,7 @@ const PLAUSIBLE_EXTENT: (f64, f64) = (0.005, 2.0);
 pub enum Geometry {
     /// Points in the order of the file.
     Points(Vec<Point3<f64>>),
-    /// Triangles; polygons of the file were split into fans.
+    /// Triangles; polygons of the file were cut into triangles. Every vertex belongs to one.
     Mesh(TriangleMesh),
 }
 
@@ -34,6 +36,18 @@ pub enum Warning {
         /// Largest side of the bounding box, taken as metres.
         extent: f64,
     },
+    /// Vertices that no triangle of the mesh uses were left out.
+    Unused {
+        /// How many.
+        vertices: usize,
+    },
+    /// The file is not of the format that its name says; it was read as what it is.
+    Content {
+        /// The format of the name.
+        named: Format,
+        /// The format of the content.
+        read: Format,
+    },
 }
 
 impl fmt::Display for Warning {
@@ -46,6 +60,13 @@ impl fmt::Display for Warning {
                 f,
                 "the largest extent is {} m; is the file in metres?",
                 Metres(*extent)
+            ),
+            Self::Unused { vertices } => {
+                write!(f, "{vertices} vertices that no face uses were left out")
+            }
+            Self::Content { named, read } => write!(
+                f,
+                "the name of the file says {named}, but its content is {read}; it was read as {read}"
             ),
         }
     }
@@ -73,6 +94,10 @@ pub struct Loaded {
     pub geometry: Geometry,
     /// Rows left out because of NaN or infinite numbers.
     pub dropped: usize,
+    /// Vertices of a mesh left out because no triangle uses them.
+    unused: usize,
+    /// The format that the name of the file says.
+    named: Format,
     /// What looks wrong, for the caller to show.
     pub warnings: Vec<Warning>,
 }
@@ -82,6 +107,27 @@ pub struct Loaded {
 pub(super) struct Raw {
     pub(super) vertices: Vec<Point3<f64>>,
     pub(super) triangles: Vec<[u32; 3]>,
+}
+
+impl Raw {
+    /// Adds a polygon whose corners exist.
+    pub(super) fn polygon(&mut self, format: Format, corners: &[u32]) -> Result<(), LoadError> {
+        if polygon::cut(corners, &self.vertices, &mut self.triangles) {
+            return Ok(());
+        }
+        let what = format!("a concave polygon of {} corners", corners.len());
+        let expected = format!("at most {} corners", polygon::MAX_CONCAVE);
+        Err(LoadError::content(format, what, &expected))
+    }
+
+    /// Adds a strip of triangles, every second one turned so that all face the same way.
+    pub(super) fn strip(&mut self, corners: &[u32]) {
+        let triangles = corners.windows(3).enumerate();
+        self.triangles.extend(triangles.map(|(i, c)| match i % 2 {
+            0 => [c[0], c[1], c[2]],
+            _ => [c[1], c[0], c[2]],
+        }));
+    }
 }
 
 impl Loaded {
@@ -100,22 +146,32 @@ impl Loaded {
         if points.is_empty() {
             return Err(LoadError::NoPoints { format, dropped });
         }
+        let mut unused = 0;
         let geometry = if triangles.is_empty() {
             Geometry::Points(points)
         } else {
-            Geometry::Mesh(TriangleMesh {
-                vertices: points,
-                triangles,
-            })
+            let all = points.len();
+            let mesh = used_part(points, triangles);
+            unused = all - mesh.vertices.len();
+            Geometry::Mesh(mesh)
         };
         let mut loaded = Self {
             format,
             geometry,
             dropped,
+            unused,
+            named: format,
             warnings: Vec::new(),
         };
         loaded.warn();
         Ok(loaded)
+    }
+
+    /// Notes the format that the name of the file says.
+    pub(super) fn named(mut self, format: Option<Format>) -> Self {
+        self.named = format.unwrap_or(self.format);
+        self.warn();
+        self
     }
 
     /// The points, or the corners of the mesh.
@@ -140,9 +196,9 @@ impl Loaded {
     }
 
     /// The cloud: the points themselves, or `mesh_samples` points spread over the mesh by area.
-    pub fn cloud(&self, mesh_samples: usize, rng: &mut impl Rng) -> Result<PointCloud, CloudError> {
-        match &self.geometry {
-            Geometry::Points(points) => PointCloud::new(points.clone()),
+    pub fn cloud(self, mesh_samples: usize, rng: &mut impl Rng) -> Result<PointCloud, CloudError> {
+        match self.geometry {
+            Geometry::Points(points) => PointCloud::new(points),
             Geometry::Mesh(mesh) => PointCloud::new(mesh.sample(mesh_samples, rng)),
         }
     }
@@ -163,6 +219,13 @@ impl Loaded {
         self.warnings = [
             (rows > 0).then_some(Warning::Dropped { rows }),
             (!plausible).then_some(Warning::Unit { extent }),
+            (self.unused > 0).then_some(Warning::Unused {
+                vertices: self.unused,
+            }),
+            (self.named != self.format).then_some(Warning::Content {
+                named: self.named,
+                read: self.format,
+            }),
         ]
         .into_iter()
         .flatten()
@@ -191,10 +254,27 @@ fn finite_part(raw: Raw) -> (Vec<Point3<f64>>, Vec<[u32; 3]>) {
     (kept, triangles)
 }
 
-/// Splits a polygon into the fan of its first corner.
-pub(super) fn fan(corners: &[u32], triangles: &mut Vec<[u32; 3]>) {
-    if let [first, rest @ ..] = corners {
-        triangles.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
+/// The mesh without vertices that no triangle uses.
+fn used_part(mut vertices: Vec<Point3<f64>>, mut triangles: Vec<[u32; 3]>) -> TriangleMesh {
+    let mut new_index = vec![u32::MAX; vertices.len()];
+    for corner in triangles.iter().flatten() {
+        new_index[*corner as usize] = 0;
+    }
+    let mut next = 0;
+    for index in new_index.iter_mut().filter(|i| **i == 0) {
+        *index = next;
+        next += 1;
+    }
+    if (next as usize) < vertices.len() {
+        let mut index = new_index.iter();
+        vertices.retain(|_| index.next().is_some_and(|i| *i != u32::MAX));
+        for corner in triangles.iter_mut().flatten() {
+            *corner = new_index[*corner as usize];
+        }
+    }
+    TriangleMesh {
+        vertices,
+        triangles,
     }
 }
 
@@ -212,11 +292,16 @@ mod tests {
         };
         let loaded = Loaded::new(Format::Ply, raw).unwrap();
         assert_eq!(loaded.dropped, 1);
-        assert_eq!(loaded.warnings[0], Warning::Dropped { rows: 1 });
+        let rest = [
+            Warning::Dropped { rows: 1 },
+            Warning::Unit { extent: 0.0 },
+            Warning::Unused { vertices: 1 },
+        ];
+        assert_eq!(loaded.warnings, rest);
         let Geometry::Mesh(mesh) = &loaded.geometry else {
             panic!("a mesh");
         };
-        assert_eq!(mesh.triangles, [[0, 1, 3]]);
+        assert_eq!(mesh.triangles, [[0, 1, 2]]);
     }
 
     #[test]

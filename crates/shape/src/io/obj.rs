@@ -4,49 +4,34 @@
 
 use nalgebra::Point3;
 
-use super::error::{Format, LoadError};
-use super::geometry::{Raw, fan};
+use super::error::LoadError;
+use super::format::Format;
+use super::geometry::Raw;
 use super::text::{Line, Lines, number};
 
 const VERTEX: &str = "`v` and three numbers";
 const FACE: &str = "`f` and at least three numbers of vertices that the file has";
 
 /// Reads `v` and `f` lines. Faces may be i, i/j, i//k or i/j/k, counted from 1 or back from −1.
+///
+/// A line that ends in `\` goes on in the next one.
 pub(super) fn read(bytes: &[u8]) -> Result<Raw, LoadError> {
     let mut raw = Raw::default();
-    // Largest vertex number used by a face, and where: faces may precede their vertices.
-    let mut furthest = (0, 0);
-    let mut corners = Vec::new();
-    for line in Lines::new(bytes, &["#"]) {
+    let mut faces = Faces::default();
+    let mut lines = Lines::new(bytes, &["#"]);
+    while let Some(mut line) = lines.next() {
+        while let Some(begun) = line.text.strip_suffix('\\') {
+            let Some(more) = lines.next() else { break };
+            line.text = format!("{begun} {}", more.text).into();
+        }
         let mut words = line.text.split_whitespace();
         match words.next() {
-            Some("v") => raw.vertices.push(vertex(&line, words)?),
-            Some("f") => {
-                corners.clear();
-                for word in words {
-                    let corner = corner(word, raw.vertices.len())
-                        .ok_or_else(|| LoadError::line(Format::Obj, line.number, FACE, word))?;
-                    if corner >= furthest.0 {
-                        furthest = (corner, line.number);
-                    }
-                    corners.push(corner);
-                }
-                if corners.len() < 3 {
-                    return Err(LoadError::line(Format::Obj, line.number, FACE, &line.text));
-                }
-                fan(&corners, &mut raw.triangles);
-            }
+            Some("v" | "V") => raw.vertices.push(vertex(&line, words)?),
+            Some("f" | "F") => faces.read(&line, words, raw.vertices.len())?,
             _ => {}
         }
     }
-    if !raw.triangles.is_empty() && furthest.0 as usize >= raw.vertices.len() {
-        let found = format!(
-            "vertex {} of {}",
-            u64::from(furthest.0) + 1,
-            raw.vertices.len()
-        );
-        return Err(LoadError::line(Format::Obj, furthest.1, FACE, &found));
-    }
+    faces.into_triangles(&mut raw)?;
     if raw.vertices.is_empty() {
         let expected = "a line of `v` and three numbers";
         return Err(LoadError::line(
@@ -57,6 +42,53 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raw, LoadError> {
         ));
     }
     Ok(raw)
+}
+
+/// The corners of all faces: faces may precede their vertices.
+#[derive(Default)]
+struct Faces {
+    corners: Vec<u32>,
+    ends: Vec<usize>,
+    /// Largest vertex number used by a face, and where.
+    furthest: (u32, usize),
+}
+
+impl Faces {
+    fn read<'a>(
+        &mut self,
+        line: &Line,
+        words: impl Iterator<Item = &'a str>,
+        vertices: usize,
+    ) -> Result<(), LoadError> {
+        let start = self.corners.len();
+        for word in words {
+            let corner = corner(word, vertices)
+                .ok_or_else(|| LoadError::line(Format::Obj, line.number, FACE, word))?;
+            if corner >= self.furthest.0 {
+                self.furthest = (corner, line.number);
+            }
+            self.corners.push(corner);
+        }
+        if self.corners.len() < start + 3 {
+            return Err(LoadError::line(Format::Obj, line.number, FACE, &line.text));
+        }
+        self.ends.push(self.corners.len());
+        Ok(())
+    }
+
+    fn into_triangles(self, raw: &mut Raw) -> Result<(), LoadError> {
+        let vertices = raw.vertices.len();
+        if !self.ends.is_empty() && self.furthest.0 as usize >= vertices {
+            let found = format!("vertex {} of {vertices}", u64::from(self.furthest.0) + 1);
+            return Err(LoadError::line(Format::Obj, self.furthest.1, FACE, &found));
+        }
+        let mut start = 0;
+        for end in self.ends {
+            raw.polygon(Format::Obj, &self.corners[start..end])?;
+            start = end;
+        }
+        Ok(())
+    }
 }
 
 fn last_line(bytes: &[u8]) -> usize {
@@ -98,6 +130,12 @@ mod tests {
         let text = b"mtllib x.mtl\nv 0 0 0\nv 1 0 0 0.5 0.5 0.5\nv 1 1 0\nvn 0 0 1\nv 0 1 0\nf 1//1 2//1 3//1 4//1\nf -4/1 -3/2/1 -2\n";
         let raw = read(text).unwrap();
         assert_eq!(raw.triangles, [[0, 1, 2], [0, 2, 3], [0, 1, 2]]);
+    }
+
+    #[test]
+    fn a_line_may_go_on_in_the_next() {
+        let text = b"v 0 0 \\\n0\nv 1 0 0\nv 0 1 0\nf 1 2 \\\r\n 3\n";
+        assert_eq!(read(text).unwrap().triangles, [[0, 1, 2]]);
     }
 
     #[test]

@@ -4,7 +4,8 @@
 
 use nalgebra::Point3;
 
-use super::error::{Format, LoadError};
+use super::error::LoadError;
+use super::format::Format;
 use super::geometry::Raw;
 use super::lzf;
 use super::text::{Lines, number};
@@ -119,6 +120,10 @@ fn header(bytes: &[u8]) -> Result<Header, LoadError> {
                 if counts.is_empty() {
                     counts = vec![1; names.len()];
                 }
+                // Version 0.5 has `COLUMNS` alone; all are 32-bit floats.
+                if sizes.is_empty() && kinds.is_empty() {
+                    (sizes, kinds) = (vec![4; names.len()], vec![b'F'; names.len()]);
+                }
                 let (fields, stride) = layout(&names, &sizes, &kinds, &counts).ok_or_else(|| {
                     refuse("FIELDS x, y and z, with a SIZE, TYPE and COUNT for each field, before DATA")
                 })?;
@@ -164,7 +169,10 @@ fn layout(
             offset,
             column,
         };
-        if let Some(axis) = ["x", "y", "z"].iter().position(|axis| axis == name) {
+        if let Some(axis) = ["x", "y", "z"]
+            .iter()
+            .position(|a| name.eq_ignore_ascii_case(a))
+        {
             let known = matches!(
                 (field.kind, field.size),
                 (b'F', 4 | 8) | (b'I' | b'U', 1 | 2 | 4 | 8)
@@ -312,6 +320,12 @@ mod tests {
             assert_eq!(read(file).unwrap().vertices, expected());
             assert!(read(&file[..file.len() - 4]).is_err());
         }
+    }
+
+    #[test]
+    fn version_five_has_columns() {
+        let text = b"COLUMNS x y z\nPOINTS 2\nDATA ascii\n0.5 -1.25 7\n1.5 2.25 -3\n";
+        assert_eq!(read(text).unwrap().vertices, expected());
     }
 
     #[test]

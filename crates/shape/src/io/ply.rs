@@ -1,16 +1,15 @@
-//! PLY: ASCII and both binary orders, any extra properties.
-
-use std::borrow::Cow;
+//! PLY: text and both binary orders, with any further elements and properties.
+//!
+//! Read by hand: the crates for it refuse names, types and layouts that programs write.
 
 use nalgebra::Point3;
-use ply_rs_bw::parser::{ParseError, Parser, Reader};
-use ply_rs_bw::ply::{
-    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyDef,
-    PropertyType, ScalarType,
-};
 
-use super::geometry::{Raw, fan};
-use super::ply_error::PlyError;
+use super::error::{LoadError, quoted};
+use super::format::Format;
+use super::geometry::Raw;
+use super::ply_body::Body;
+use super::ply_header::{self, Element, Encoding, Property};
+use super::table_header;
 
 /// Vertices of a PLY file; rows with NaN or infinite coordinates are dropped and counted.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +21,10 @@ pub struct PlyPoints {
 }
 
 /// Reads the vertices of a PLY file.
-pub fn read_ply(bytes: &[u8]) -> Result<PlyPoints, PlyError> {
+///
+/// # Errors
+/// The bytes are not such a file; see [`LoadError`].
+pub fn read_ply(bytes: &[u8]) -> Result<PlyPoints, LoadError> {
     let mut points = read(bytes)?.vertices;
     let count = points.len();
     points.retain(|p| p.iter().all(|x| x.is_finite()));
@@ -32,265 +34,367 @@ pub fn read_ply(bytes: &[u8]) -> Result<PlyPoints, PlyError> {
     })
 }
 
-/// Vertices, finite or not, and faces as fans of triangles.
-pub(super) fn read(bytes: &[u8]) -> Result<Raw, PlyError> {
-    let bytes = without_nan_words(bytes);
-    let mut reader = Reader::new(bytes.as_ref());
-    let header = Parser::<Skipped>::new()
-        .read_header(&mut reader)
-        .map_err(damage)?;
-    let mut rows: Option<Vec<Vertex>> = None;
-    let mut faces: Vec<Face> = Vec::new();
-    for (name, element) in &header.elements {
-        let rest = reader.get_ref().len();
-        check_size(element, header.encoding, rest, bytes.len() - rest)?;
-        match name.as_str() {
-            "vertex" => rows = Some(elements(&mut reader, element, &header, bytes.len())?),
-            "face" => faces = elements(&mut reader, element, &header, bytes.len())?,
-            _ => {
-                elements::<Skipped>(&mut reader, element, &header, bytes.len())?;
+/// What the rows of an element are.
+enum Role {
+    /// Points; where x, y and z stand among the properties.
+    Vertices([usize; 3]),
+    /// Polygons, by the list of vertex numbers.
+    Polygons(usize),
+    /// Strips of triangles; −1 begins another one.
+    Strips(usize),
+    Other,
+}
+
+/// Vertices, finite or not, and polygons and strips as triangles.
+pub(super) fn read(bytes: &[u8]) -> Result<Raw, LoadError> {
+    let header = ply_header::read(bytes)?;
+    let points = vertex_element(&header.elements)?;
+    let mut body = Body::new(bytes, &header);
+    let mut raw = Raw::default();
+    let mut aligned = true;
+    let mut runs: Vec<Runs> = Vec::new();
+    for (index, element) in header.elements.iter().enumerate() {
+        let role = if index == points.0 {
+            Role::Vertices(points.1)
+        } else {
+            role(element)?
+        };
+        check_size(&body, element, header.encoding)?;
+        match role {
+            Role::Vertices(_) => raw.vertices.reserve_exact(element.count),
+            Role::Polygons(_) | Role::Strips(_) => runs.push(Runs::new(&role)),
+            Role::Other => {}
+        }
+        for _ in 0..element.count {
+            match (&role, runs.last_mut()) {
+                (Role::Vertices(columns), _) => {
+                    raw.vertices.push(vertex(&mut body, element, *columns)?);
+                }
+                (Role::Polygons(list) | Role::Strips(list), Some(runs)) => {
+                    runs.read(&mut body, element, *list)?;
+                }
+                _ => other(&mut body, element)?,
             }
+            aligned = aligned && body.at_line_end();
         }
     }
-    let vertices = rows.ok_or(PlyError::NoVertices)?;
-    let vertices: Vec<Point3<f64>> = vertices
-        .iter()
-        .enumerate()
-        .map(|(index, row)| point(index, row))
-        .collect::<Result<_, _>>()?;
-    Ok(Raw {
-        triangles: triangles(&faces, vertices.len())?,
-        vertices,
+    // Rows may be broken anywhere, but then nothing may be missing or left.
+    if header.encoding == Encoding::Text && !aligned && body.word().is_some() {
+        return Err(body.refuse("the end of the file after the last row", "more numbers"));
+    }
+    for runs in runs {
+        runs.into_triangles(&mut raw)?;
+    }
+    Ok(raw)
+}
+
+fn has_name(element: &Element, names: &[&str]) -> bool {
+    names.iter().any(|n| element.name.eq_ignore_ascii_case(n))
+}
+
+/// The element with the points, and where its coordinates stand.
+fn vertex_element(elements: &[Element]) -> Result<(usize, [usize; 3]), LoadError> {
+    let named = |names: &[&str]| elements.iter().position(|e| has_name(e, names));
+    let found = named(&["vertex"]).or_else(|| named(&["vertices", "point", "points"]));
+    let Some(index) = found else {
+        let names: Vec<&str> = elements.iter().map(|e| e.name.as_str()).collect();
+        let what = format!("the elements {}", quoted(&names.join("`, `")));
+        return Err(LoadError::content(Format::Ply, what, "an element `vertex`"));
+    };
+    let element = &elements[index];
+    let names: Vec<&str> = element.properties.iter().map(|p| p.name.as_str()).collect();
+    let exact = ["x", "y", "z"].map(|axis| names.iter().position(|n| *n == axis));
+    let columns = match exact {
+        [Some(x), Some(y), Some(z)] => Some([x, y, z]),
+        _ => table_header::columns(&names).ok(),
+    };
+    let scalar = |c: &[usize; 3]| c.iter().all(|&i| element.properties[i].list.is_none());
+    columns.filter(scalar).map(|c| (index, c)).ok_or_else(|| {
+        let expected = "properties x, y and z";
+        LoadError::line(Format::Ply, element.line, expected, &names.join(", "))
     })
 }
 
-fn point(index: usize, row: &Vertex) -> Result<Point3<f64>, PlyError> {
-    let [x, y, z] = row.0;
-    let named =
-        |value: Option<f64>, property| value.ok_or(PlyError::Coordinate { index, property });
-    Ok(Point3::new(named(x, "x")?, named(y, "y")?, named(z, "z")?))
-}
-
-fn triangles(faces: &[Face], vertices: usize) -> Result<Vec<[u32; 3]>, PlyError> {
-    let mut triangles = Vec::with_capacity(faces.len());
-    for (index, face) in faces.iter().enumerate() {
-        if let Some(&corner) = face.0.iter().find(|c| **c as usize >= vertices) {
-            return Err(PlyError::Corner {
-                index,
-                corner,
-                vertices,
-            });
+fn role(element: &Element) -> Result<Role, LoadError> {
+    let known = [
+        "vertex_indices",
+        "vertex_index",
+        "vertex_indexes",
+        "vertices",
+        "vertex",
+        "indices",
+        "vertex_ids",
+    ];
+    let lists = || {
+        element
+            .properties
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| p.list.is_some())
+    };
+    let is_known = |p: &Property| known.iter().any(|k| p.name.eq_ignore_ascii_case(k));
+    let named = lists().find(|(_, p)| is_known(p));
+    let whole = || {
+        let mut whole = lists().filter(|(_, p)| p.scalar.is_whole());
+        whole.next().filter(|_| whole.next().is_none())
+    };
+    let list = named.or_else(whole).map(|(i, _)| i);
+    let strips = has_name(element, &["tristrips", "tristrip", "tri_strips", "strips"]);
+    let faces = has_name(
+        element,
+        &[
+            "face",
+            "faces",
+            "polygon",
+            "polygons",
+            "triangle",
+            "triangles",
+        ],
+    );
+    match list {
+        Some(list) if strips => Ok(Role::Strips(list)),
+        Some(list) if faces => Ok(Role::Polygons(list)),
+        None if (strips || faces) && element.count > 0 => {
+            let names: Vec<&str> = element.properties.iter().map(|p| p.name.as_str()).collect();
+            let expected = "a list `vertex_indices` of the corners of each face";
+            Err(LoadError::line(
+                Format::Ply,
+                element.line,
+                expected,
+                &names.join(", "),
+            ))
         }
-        fan(&face.0, &mut triangles);
+        _ => Ok(Role::Other),
     }
-    Ok(triangles)
-}
-
-fn elements<E: PropertyAccess>(
-    reader: &mut Reader<&[u8]>,
-    element: &ElementDef,
-    header: &Header,
-    length: usize,
-) -> Result<Vec<E>, PlyError> {
-    let rows = Parser::<E>::new().read_payload_for_element(reader, element, header);
-    rows.map_err(|error| match header.encoding {
-        Encoding::Ascii => damage(error),
-        // The parser counts rows of binary data as lines; the byte says more.
-        _ => {
-            let byte = length - reader.get_ref().len();
-            let reason = format!("byte {byte}, element `{}`: {}", element.name, brief(error));
-            PlyError::Parse { reason }
-        }
-    })
 }
 
 /// Refuses a count of rows that the rest of the file cannot hold.
-fn check_size(
-    element: &ElementDef,
-    encoding: Encoding,
-    rest: usize,
-    byte: usize,
-) -> Result<(), PlyError> {
-    let width = |scalar: &ScalarType| match scalar {
-        ScalarType::Char | ScalarType::UChar => 1,
-        ScalarType::Short | ScalarType::UShort => 2,
-        ScalarType::Int | ScalarType::UInt | ScalarType::Float => 4,
-        ScalarType::Double => 8,
-    };
-    let least = |property: &PropertyDef| match (&property.data_type, encoding) {
-        (_, Encoding::Ascii) => 1,
-        (PropertyType::Scalar(scalar) | PropertyType::List(scalar, _), _) => width(scalar),
-    };
-    let row: usize = element.properties.values().map(least).sum();
-    let needed = element.count.checked_mul(row.max(1));
-    if needed.is_some_and(|needed| needed <= rest) {
+fn check_size(body: &Body, element: &Element, encoding: Encoding) -> Result<(), LoadError> {
+    let row = element.least_row(encoding).max(1);
+    // The last number of a text needs no blank behind it.
+    let rest = body.rest().saturating_add(1);
+    if element
+        .count
+        .checked_mul(row)
+        .is_some_and(|needed| needed <= rest)
+    {
         return Ok(());
     }
     let (count, name) = (element.count, &element.name);
-    let reason = format!(
-        "expected {count} rows of `{name}`, at least {row} bytes each, from byte {byte}; found {rest} bytes"
-    );
-    Err(PlyError::Parse { reason })
+    let expected = format!("{count} rows of `{name}`");
+    let found = format!("{} bytes for them", body.rest());
+    Err(LoadError::line(
+        Format::Ply,
+        element.line,
+        &expected,
+        &found,
+    ))
 }
 
-fn damage(error: ParseError) -> PlyError {
-    PlyError::Parse {
-        reason: brief(error),
+fn vertex(
+    body: &mut Body,
+    element: &Element,
+    columns: [usize; 3],
+) -> Result<Point3<f64>, LoadError> {
+    let mut point = Point3::origin();
+    for (i, property) in element.properties.iter().enumerate() {
+        match columns.iter().position(|c| *c == i) {
+            Some(axis) => point[axis] = body.number(property.scalar, "a coordinate")?,
+            None => pass_over(body, property)?,
+        }
+    }
+    Ok(point)
+}
+
+fn pass_over(body: &mut Body, property: &Property) -> Result<(), LoadError> {
+    let expected = "a number for each property";
+    match property.list {
+        None => body.skip(property.scalar, expected),
+        Some(kind) => {
+            let count = body.whole(kind, "the length of a list")?;
+            body.skip_list(count, property.scalar, expected)
+        }
     }
 }
 
-/// The parser's message in one line of bearable length.
-fn brief(error: ParseError) -> String {
-    const LONGEST: usize = 200;
-    let text = error.to_string();
-    let words: Vec<&str> = text.split_whitespace().collect();
-    words.join(" ").chars().take(LONGEST).collect()
+/// Passes over a row.
+fn other(body: &mut Body, element: &Element) -> Result<(), LoadError> {
+    let mut properties = element.properties.iter();
+    properties.try_for_each(|property| pass_over(body, property))
 }
 
-/// x, y and z as far as the row has them.
-struct Vertex([Option<f64>; 3]);
+/// Polygons or strips as they stand in the file: faces may come before their vertices.
+struct Runs {
+    strips: bool,
+    corners: Vec<u32>,
+    /// Corners of each polygon or strip.
+    lengths: Vec<u32>,
+}
 
-/// Corners of a polygon.
-struct Face(Vec<u32>);
-
-/// A row that is read over.
-struct Skipped;
-
-impl PropertyAccess for Vertex {
-    fn new() -> Self {
-        Self([None; 3])
+impl Runs {
+    fn new(role: &Role) -> Self {
+        Self {
+            strips: matches!(role, Role::Strips(_)),
+            corners: Vec::new(),
+            lengths: Vec::new(),
+        }
     }
 
-    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
-        match ["x", "y", "z"].iter().position(|axis| *axis == name) {
-            Some(axis) => {
-                self.0[axis] = number(&value);
-                PropertyAccessResult::Set
+    fn read(&mut self, body: &mut Body, element: &Element, list: usize) -> Result<(), LoadError> {
+        let expected = "the number of a vertex";
+        for (i, property) in element.properties.iter().enumerate() {
+            let (true, Some(kind)) = (i == list, property.list) else {
+                pass_over(body, property)?;
+                continue;
+            };
+            let count = body.whole(kind, "the number of corners")?;
+            let count = body.count(count, property.scalar, expected)?;
+            let mut length = 0;
+            for _ in 0..count {
+                let corner = body.whole(property.scalar, expected)?;
+                match u32::try_from(corner) {
+                    Ok(corner) => {
+                        self.corners.push(corner);
+                        length += 1;
+                    }
+                    Err(_) if self.strips && corner == -1 => {
+                        self.lengths.push(std::mem::take(&mut length));
+                    }
+                    Err(_) => return Err(body.refuse(expected, &corner.to_string())),
+                }
             }
-            None => PropertyAccessResult::Ignored,
+            self.lengths.push(length);
         }
-    }
-}
-
-impl PropertyAccess for Face {
-    fn new() -> Self {
-        Self(Vec::new())
+        Ok(())
     }
 
-    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
-        if !matches!(name, "vertex_indices" | "vertex_index") {
-            return PropertyAccessResult::Ignored;
-        }
-        // Negative numbers become too large ones, which the check of corners names.
-        self.0 = match value {
-            Property::ListChar(list) => list.iter().map(|i| *i as u32).collect(),
-            Property::ListUChar(list) => list.iter().map(|i| u32::from(*i)).collect(),
-            Property::ListShort(list) => list.iter().map(|i| *i as u32).collect(),
-            Property::ListUShort(list) => list.iter().map(|i| u32::from(*i)).collect(),
-            Property::ListInt(list) => list.iter().map(|i| *i as u32).collect(),
-            Property::ListUInt(list) => list,
-            _ => return PropertyAccessResult::UnsupportedType,
-        };
-        PropertyAccessResult::Set
-    }
-}
-
-impl PropertyAccess for Skipped {
-    fn new() -> Self {
-        Self
-    }
-}
-
-/// ASCII bodies with `nan` and `inf` rewritten as numbers that overflow to infinity.
-///
-/// Scanners write such rows, but the parser's grammar has only digits.
-fn without_nan_words(bytes: &[u8]) -> Cow<'_, [u8]> {
-    const END: &[u8] = b"end_header";
-    let header = &bytes[..bytes.len().min(64 * 1024)];
-    let ascii = header.windows(12).any(|w| w == b"format ascii");
-    let body = header.windows(END.len()).position(|w| w == END);
-    let (true, Some(body)) = (ascii, body) else {
-        return Cow::Borrowed(bytes);
-    };
-    let (header, body) = bytes.split_at(body + END.len());
-    let mut out = header.to_vec();
-    for (i, word) in body.split(|b| *b == b' ' || *b == b'\t').enumerate() {
-        if i > 0 {
-            out.push(b' ');
-        }
-        // The last word of a line takes the line's end and the next line's first word with it.
-        for (j, part) in word.split(|b| *b == b'\n').enumerate() {
-            if j > 0 {
-                out.push(b'\n');
+    fn into_triangles(self, raw: &mut Raw) -> Result<(), LoadError> {
+        let vertices = raw.vertices.len();
+        let mut rest = &self.corners[..];
+        for (row, length) in self.lengths.iter().enumerate() {
+            let (corners, tail) = rest.split_at(*length as usize);
+            rest = tail;
+            if let Some(corner) = corners.iter().find(|c| **c as usize >= vertices) {
+                let what = match self.strips {
+                    true => format!("corner {corner} in a strip"),
+                    false => format!("corner {corner} in face {row}"),
+                };
+                let expected = format!("numbers of vertices below {vertices}");
+                return Err(LoadError::content(Format::Ply, what, &expected));
             }
-            out.extend_from_slice(overflowing(part));
+            if self.strips {
+                raw.strip(corners);
+            } else {
+                raw.polygon(Format::Ply, corners)?;
+            }
         }
-    }
-    Cow::Owned(out)
-}
-
-fn overflowing(word: &[u8]) -> &[u8] {
-    let bare = word.strip_suffix(b"\r").unwrap_or(word);
-    let bare = bare.strip_prefix(b"-").unwrap_or(bare);
-    let odd = ["nan", "nan(ind)", "inf", "infinity"];
-    match std::str::from_utf8(bare) {
-        Ok(text) if odd.iter().any(|o| text.eq_ignore_ascii_case(o)) => b"1e999",
-        _ => word,
-    }
-}
-
-fn number(property: &Property) -> Option<f64> {
-    match *property {
-        Property::Char(v) => Some(f64::from(v)),
-        Property::UChar(v) => Some(f64::from(v)),
-        Property::Short(v) => Some(f64::from(v)),
-        Property::UShort(v) => Some(f64::from(v)),
-        Property::Int(v) => Some(f64::from(v)),
-        Property::UInt(v) => Some(f64::from(v)),
-        Property::Float(v) => Some(f64::from(v)),
-        Property::Double(v) => Some(v),
-        _ => None,
+        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::write_ply;
-    use crate::triangle_mesh::TriangleMesh;
+
+    fn text(header: &str, body: &str) -> Vec<u8> {
+        format!("ply\nformat ascii 1.0\n{header}end_header\n{body}").into_bytes()
+    }
+
+    const XYZ: &str = "property float x\nproperty float y\nproperty float z\n";
 
     #[test]
-    fn ascii_with_extra_properties_and_a_nan_row() {
-        let text = b"ply\r\nformat ascii 1.0\r\nelement vertex 3\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\nproperty uchar red\r\nend_header\r\n1 2 3 9\r\nnan 0 0 9\r\n4 5 6 9\r\n";
-        let read = read_ply(text).unwrap();
-        assert_eq!(read.dropped, 1);
-        assert_eq!(read.points[1], Point3::new(4.0, 5.0, 6.0));
+    fn rows_may_be_written_in_many_ways() {
+        let header = format!("element vertex 2\n{XYZ}property uchar red\n");
+        for body in [
+            "1. .5 -3 9\n4 5 6 255.0\n",
+            "1. .5 -3 9\n\n  \n4 5 6 256",
+            "\n1\n.5 -3\n9 4 5\r\n6 0",
+            "1 .5 -3 -1\n4 5 6 x\ntrailing words\n",
+        ] {
+            let read = read_ply(&text(&header, body)).unwrap();
+            assert_eq!(read.points[0], Point3::new(1.0, 0.5, -3.0), "{body}");
+            assert_eq!(read.points[1], Point3::new(4.0, 5.0, 6.0), "{body}");
+        }
+        let nan = read_ply(&text(&header, "1.#QNAN 0 0 9\n4 5 6 9\n")).unwrap();
+        assert_eq!((nan.dropped, nan.points.len()), (1, 1));
+        for body in [
+            "1 2 3 4\n5 6 7\n",
+            "1 2 3 4 5\n6 7 8 9\n",
+            "1 2 3 4\n5 y 7 8\n",
+        ] {
+            assert!(read_ply(&text(&header, body)).is_err(), "{body}");
+        }
     }
 
     #[test]
-    fn a_written_mesh_is_read_back() {
-        let mesh = TriangleMesh {
-            vertices: vec![Point3::new(0.1, -0.2, 0.3); 3],
-            triangles: vec![[0, 1, 2]],
-        };
-        let mut bytes = Vec::new();
-        write_ply(&mesh, &mut bytes).unwrap();
-        assert_eq!(read_ply(&bytes).unwrap().points, mesh.vertices);
+    fn headers_of_many_programs() {
+        for (from, to) in [
+            ("property float x", "property float32 X"),
+            (
+                "property float x",
+                "property float scalar_C2C_absolute_distances[<0.1]\nproperty float x",
+            ),
+            (
+                "property float x",
+                "comment caf\u{e9}\nproperty int64 label (#1)\nproperty float x",
+            ),
+            ("ply\n", "\u{feff}ply\n"),
+        ] {
+            let plain = text(&format!("element vertex 1\n{XYZ}"), "7 7 7\n");
+            let changed = String::from_utf8(plain).unwrap().replacen(from, to, 1);
+            let changed = match to.contains("\nproperty float x") {
+                true => changed.replace("7 7 7", "7 7 7 7"),
+                false => changed,
+            };
+            let read = read_ply(changed.as_bytes());
+            assert_eq!(read.unwrap().points, [Point3::new(7.0, 7.0, 7.0)], "{to}");
+        }
+        let carriage = text(&format!("element vertex 1\n{XYZ}"), "7 7 7\n");
+        let carriage = String::from_utf8(carriage).unwrap().replace('\n', "\r");
+        assert_eq!(read_ply(carriage.as_bytes()).unwrap().points.len(), 1);
+    }
+
+    #[test]
+    fn binary_data_are_never_edited() {
+        let mut bytes = format!(
+            "ply\nformat binary_little_endian 1.0\ncomment format ascii\nelement vertex 1\n{}end_header\n",
+            XYZ.replace("float", "short")
+        )
+        .into_bytes();
+        bytes.extend([9, 9, 9, 32, 10, 13]);
+        let read = read_ply(&bytes).unwrap();
+        let expected = [0x0909, 0x2009, 0x0d0a].map(f64::from);
+        assert_eq!(read.points, [Point3::from(expected)]);
+    }
+
+    #[test]
+    fn strips_and_lists_of_other_names_are_faces() {
+        let vertices = format!("element vertex 4\n{XYZ}");
+        let rows = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
+        let strips =
+            format!("{vertices}element tristrips 1\nproperty list int int vertex_indices\n");
+        let raw = read(&text(&strips, &format!("{rows}8 0 1 2 3 -1 0 1 2"))).unwrap();
+        assert_eq!(raw.triangles, [[0, 1, 2], [2, 1, 3], [0, 1, 2]]);
+        let named = format!("{vertices}element face 1\nproperty list uchar int vertices\n");
+        let raw = read(&text(&named, &format!("{rows}3 0.0 1.0 2\n"))).unwrap();
+        assert_eq!(raw.triangles, [[0, 1, 2]]);
+        let none = format!("{vertices}element face 1\nproperty int a\n");
+        assert!(read(&text(&none, &format!("{rows}3\n"))).is_err());
     }
 
     #[test]
     fn damaged_files_are_refused() {
         assert!(read_ply(b"").is_err());
         assert!(read_ply(b"solid stl").is_err());
-        let cut = b"ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n\0\0";
-        assert!(read_ply(cut).is_err());
-        let no_z = b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n1 2\n";
-        assert!(matches!(
-            read_ply(no_z),
-            Err(PlyError::Coordinate {
-                index: 0,
-                property: "z"
-            })
-        ));
+        let cut = format!(
+            "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\n{XYZ}end_header\n\0\0"
+        );
+        assert!(read_ply(cut.as_bytes()).is_err());
+        let no_z = text(
+            "element vertex 1\nproperty float x\nproperty float y\n",
+            "1 2\n",
+        );
+        let error = read_ply(&no_z).unwrap_err();
+        assert!(matches!(error, LoadError::Line { line: 3, .. }), "{error}");
     }
 }

@@ -4,22 +4,22 @@ use std::collections::HashMap;
 
 use nalgebra::Point3;
 
-use super::error::{Format, LoadError};
+use super::error::LoadError;
+use super::format::Format;
 use super::geometry::Raw;
 use super::text::{Lines, number};
 
 const HEADER: usize = 80;
 const FACET: usize = 50;
 
-/// Reads text STL if the file begins with `solid` and is not exactly as long as a binary one.
+/// Reads binary STL if the length is that of its facets, or if the beginning is no text.
 pub(super) fn read(bytes: &[u8]) -> Result<Raw, LoadError> {
     let facets = bytes
         .get(HEADER..HEADER + 4)
         .and_then(|b| b.try_into().ok())
         .map(u32::from_le_bytes);
     let promised = facets.map(|n| HEADER as u64 + 4 + FACET as u64 * u64::from(n));
-    let text = bytes.trim_ascii_start().starts_with(b"solid");
-    if text && promised != Some(bytes.len() as u64) {
+    if promised != Some(bytes.len() as u64) && is_text(bytes) {
         return read_text(bytes);
     }
     match (facets, promised) {
@@ -39,6 +39,27 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raw, LoadError> {
             "the end of the file".to_owned(),
         )),
     }
+}
+
+/// Whether the length of the file is that of as many facets as a binary STL says.
+pub(super) fn is_binary(bytes: &[u8]) -> bool {
+    let count = bytes.get(HEADER..HEADER + 4);
+    let facets = count
+        .and_then(|b| b.try_into().ok())
+        .map(u32::from_le_bytes);
+    facets.is_some_and(|n| HEADER as u64 + 4 + FACET as u64 * u64::from(n) == bytes.len() as u64)
+}
+
+/// Whether the file begins with `solid`, in any case, and no byte near its beginning is binary.
+fn is_text(bytes: &[u8]) -> bool {
+    const LOOK: usize = HEADER + 4 + 4 * FACET;
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let start = bytes.trim_ascii_start();
+    let solid = start
+        .get(..5)
+        .is_some_and(|w| w.eq_ignore_ascii_case(b"solid"));
+    let binary = |b: &u8| b.is_ascii_control() && !b.is_ascii_whitespace();
+    solid && !bytes[..bytes.len().min(LOOK)].iter().any(binary)
 }
 
 fn read_binary(bytes: &[u8], facets: usize) -> Raw {
@@ -61,14 +82,18 @@ fn read_binary(bytes: &[u8], facets: usize) -> Raw {
 fn read_text(bytes: &[u8]) -> Result<Raw, LoadError> {
     let mut weld = Weld::default();
     let mut corners: Vec<Point3<f64>> = Vec::with_capacity(3);
-    let mut lines = Lines::new(bytes, &[]);
+    let mut lines = Lines::new(bytes, &["#", "//"]);
     let mut closed = true;
     for line in lines.by_ref() {
         let refuse =
             |expected: &str| LoadError::line(Format::Stl, line.number, expected, &line.text);
         let mut words = line.text.split_whitespace();
-        match words.next().map(str::to_ascii_lowercase).as_deref() {
-            Some("vertex") => {
+        let mut key = words.next().unwrap_or_default().to_ascii_lowercase();
+        if key == "end" {
+            key.push_str(&words.next().unwrap_or_default().to_ascii_lowercase());
+        }
+        match key.as_str() {
+            "vertex" => {
                 let numbers: Option<Vec<f64>> = words.map(number).collect();
                 match numbers.as_deref() {
                     Some(&[x, y, z]) if corners.len() < 3 => corners.push(Point3::new(x, y, z)),
@@ -76,16 +101,16 @@ fn read_text(bytes: &[u8]) -> Result<Raw, LoadError> {
                     _ => return Err(refuse("`vertex` and three numbers")),
                 }
             }
-            Some("endloop") => match corners[..] {
+            "endloop" => match corners[..] {
                 [a, b, c] => {
                     weld.triangle([a, b, c]);
                     corners.clear();
                 }
                 _ => return Err(refuse("three `vertex` lines before")),
             },
-            Some("solid") => closed = false,
-            Some("endsolid") => closed = true,
-            Some("facet" | "outer" | "endfacet") => {}
+            "solid" => closed = false,
+            "endsolid" => closed = true,
+            "facet" | "outer" | "endfacet" => {}
             _ => {
                 return Err(refuse(
                     "one of facet, outer, vertex, endloop, endfacet, endsolid",
@@ -158,6 +183,27 @@ mod tests {
         assert_eq!(text.vertices.len(), 4);
         assert_eq!(text.vertices, same.vertices);
         assert_eq!(text.triangles, same.triangles);
+    }
+
+    #[test]
+    fn text_of_other_programs() {
+        let expected = read(TEXT.as_bytes()).unwrap().triangles;
+        let two_words = TEXT
+            .replace("endloop", "end loop")
+            .replace("endsolid", "end solid");
+        let comments = TEXT.replace("outer loop", "// by hand\nouter loop # here");
+        for text in [
+            TEXT.to_ascii_uppercase(),
+            format!("\u{feff}{TEXT}"),
+            TEXT.replacen("solid", "Solid", 1),
+            two_words,
+            comments,
+        ] {
+            assert_eq!(read(text.as_bytes()).unwrap().triangles, expected, "{text}");
+        }
+        let mut trailing = binary(&[[0., 0., 0., 1., 0., 0., 0., 1., 0.]]);
+        trailing.extend([0, 0]);
+        assert_eq!(read(&trailing).unwrap().triangles.len(), 1);
     }
 
     #[test]

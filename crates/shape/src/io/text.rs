@@ -70,6 +70,60 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
+/// The words of a text with their lines, wherever the lines break; `#` begins a comment.
+#[derive(Clone)]
+pub(super) struct Words<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    line: usize,
+}
+
+impl<'a> Words<'a> {
+    pub(super) fn new(bytes: &'a [u8]) -> Self {
+        let at = if bytes.starts_with(b"\xEF\xBB\xBF") {
+            3
+        } else {
+            0
+        };
+        Self { bytes, at, line: 1 }
+    }
+
+    /// The line of the word that was read last.
+    pub(super) fn line(&self) -> usize {
+        self.line
+    }
+}
+
+impl<'a> Iterator for Words<'a> {
+    /// A word is empty where it is not UTF-8.
+    type Item = &'a str;
+
+    fn next(&mut self) -> Option<&'a str> {
+        let mut in_comment = false;
+        loop {
+            let rest = &self.bytes[self.at..];
+            match rest {
+                [] => return None,
+                // The line feed behind it ends the line.
+                [b'\r', b'\n', ..] => {}
+                [b'\n' | b'\r', ..] => {
+                    in_comment = false;
+                    self.line += 1;
+                }
+                [b'#', ..] => in_comment = true,
+                [byte, ..] if in_comment || byte.is_ascii_whitespace() => {}
+                _ => {
+                    let ends = |b: &u8| b.is_ascii_whitespace() || *b == b'#';
+                    let end = rest.iter().position(ends).unwrap_or(rest.len());
+                    self.at += end;
+                    return Some(std::str::from_utf8(&rest[..end]).unwrap_or_default());
+                }
+            }
+            self.at += 1;
+        }
+    }
+}
+
 /// A number as scanners write it: also `nan`, `-nan(ind)` and `inf`.
 pub(super) fn number(word: &str) -> Option<f64> {
     if let Ok(value) = word.parse() {
@@ -92,6 +146,16 @@ mod tests {
             .collect();
         let expected = [(1, "a"), (3, "b"), (5, "d")].map(|(n, t)| (n, t.to_owned()));
         assert_eq!(lines, expected);
+    }
+
+    #[test]
+    fn words_know_their_lines() {
+        let mut words = Words::new(b"\xEF\xBB\xBFa b#c d\r\n# e\rf\n\xFF g");
+        let mut seen = Vec::new();
+        while let Some(word) = words.next() {
+            seen.push((words.line(), word));
+        }
+        assert_eq!(seen, [(1, "a"), (1, "b"), (3, "f"), (4, ""), (4, "g")]);
     }
 
     #[test]

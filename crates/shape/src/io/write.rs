@@ -15,6 +15,8 @@ pub enum MeshFormat {
     Stl,
     /// Text OFF with all digits.
     Off,
+    /// Binary glTF 2.0; coordinates are rounded to single precision and the axes are kept.
+    Glb,
 }
 
 impl MeshFormat {
@@ -26,6 +28,7 @@ impl MeshFormat {
             "obj" => Self::Obj,
             "stl" => Self::Stl,
             "off" => Self::Off,
+            "glb" => Self::Glb,
             _ => return None,
         })
     }
@@ -43,7 +46,7 @@ impl MeshFormat {
 ///     vertices: vec![corner(0.0, 0.0), corner(0.25, 0.0), corner(0.0, 0.5)],
 ///     triangles: vec![[0, 1, 2]],
 /// };
-/// for (format, name) in [(MeshFormat::Obj, "obj"), (MeshFormat::Off, "off")] {
+/// for (format, name) in [(MeshFormat::Obj, "obj"), (MeshFormat::Glb, "glb")] {
 ///     let mut bytes = Vec::new();
 ///     write_mesh(&mesh, format, &mut bytes)?;
 ///     assert_eq!(read_cloud(&bytes, name)?.vertices(), mesh.vertices);
@@ -59,6 +62,7 @@ pub fn write_mesh(mesh: &TriangleMesh, format: MeshFormat, out: &mut impl Write)
         MeshFormat::Obj => write_obj(mesh, out),
         MeshFormat::Stl => write_stl(mesh, out),
         MeshFormat::Off => write_off(mesh, out),
+        MeshFormat::Glb => write_glb(mesh, out),
     }
 }
 
@@ -69,7 +73,7 @@ pub fn write_mesh(mesh: &TriangleMesh, format: MeshFormat, out: &mut impl Write)
 pub fn write_ply(mesh: &TriangleMesh, out: &mut impl Write) -> io::Result<()> {
     write!(
         out,
-        "ply\nformat binary_little_endian 1.0\ncomment metres\n\
+        "ply\nformat binary_little_endian 1.0\n\
          element vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
          element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
         mesh.vertices.len(),
@@ -141,6 +145,61 @@ fn write_stl(mesh: &TriangleMesh, out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
+fn write_glb(mesh: &TriangleMesh, out: &mut impl Write) -> io::Result<()> {
+    let points: Vec<[f32; 3]> = mesh
+        .vertices
+        .iter()
+        .map(|p| [p.x as f32, p.y as f32, p.z as f32])
+        .collect();
+    // The format asks for the bounds of positions.
+    let bound = |least: bool| {
+        let start = if least {
+            f32::INFINITY
+        } else {
+            f32::NEG_INFINITY
+        };
+        let one = |a: f32, b: f32| if least { a.min(b) } else { a.max(b) };
+        let fold = |m: [f32; 3], p: &[f32; 3]| [one(m[0], p[0]), one(m[1], p[1]), one(m[2], p[2])];
+        points.iter().fold([start; 3], fold)
+    };
+    let (positions, corners) = (12 * points.len(), 12 * mesh.triangles.len());
+    let json = serde_json::json!({
+        "asset": {"version": "2.0", "generator": "moduli"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "mode": 4}]}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": points.len(), "type": "VEC3",
+             "min": bound(true), "max": bound(false)},
+            {"bufferView": 1, "componentType": 5125, "count": 3 * mesh.triangles.len(), "type": "SCALAR"}
+        ],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": 0, "byteLength": positions, "target": 34962},
+            {"buffer": 0, "byteOffset": positions, "byteLength": corners, "target": 34963}
+        ],
+        "buffers": [{"byteLength": positions + corners}]
+    });
+    let mut text = json.to_string().into_bytes();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let length = count(28 + text.len() + positions + corners)?;
+    out.write_all(b"glTF")?;
+    for word in [2, length, count(text.len())?] {
+        out.write_all(&word.to_le_bytes())?;
+    }
+    out.write_all(b"JSON")?;
+    out.write_all(&text)?;
+    out.write_all(&count(positions + corners)?.to_le_bytes())?;
+    out.write_all(b"BIN\0")?;
+    for x in points.iter().flatten() {
+        out.write_all(&x.to_le_bytes())?;
+    }
+    for corner in mesh.triangles.iter().flatten() {
+        out.write_all(&corner.to_le_bytes())?;
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use nalgebra::Point3;
@@ -160,7 +219,7 @@ mod tests {
             vertices: corners.map(Point3::from).to_vec(),
             triangles: vec![[0, 1, 2], [1, 0, 3], [0, 2, 3], [2, 1, 3]],
         };
-        for extension in ["ply", "obj", "stl", "off"] {
+        for extension in ["ply", "obj", "stl", "off", "glb"] {
             let format = MeshFormat::from_extension(extension).unwrap();
             let mut bytes = Vec::new();
             write_mesh(&mesh, format, &mut bytes).unwrap();
@@ -173,6 +232,6 @@ mod tests {
             assert_eq!(read.vertices.len(), 4, "{extension}");
             assert_eq!(read.volume(), mesh.volume(), "{extension}");
         }
-        assert_eq!(MeshFormat::from_extension("glb"), None);
+        assert_eq!(MeshFormat::from_extension("fbx"), None);
     }
 }

@@ -1,124 +1,246 @@
-//! XYZ, CSV and their relatives: one point per line.
+//! XYZ, CSV and their relatives: one point per line, in columns.
 
 use nalgebra::Point3;
 
-use super::error::{Format, LoadError};
+use super::error::LoadError;
+use super::format::Format;
 use super::geometry::Raw;
 use super::table_header::{self, Unnamed};
 use super::text::{Lines, number};
 
-/// What begins a comment.
-const COMMENTS: [&str; 3] = ["#", "//", "%"];
+/// Beginnings of comments.
+const COMMENTS: &[&str] = &["#", "//", "%"];
 
-/// Reads the columns that a header calls x, y and z, or the first three where there is none.
+/// Reads the columns that a header calls x, y and z, or the first three where there is no header.
 ///
-/// Columns are separated by semicolons if the line has any, else by commas, else by blanks; beside
-/// semicolons a comma is a decimal comma. `#`, `//` and `%` begin comments. One header line is allowed
-/// before the first point, as a comment or not, and a line with the number of points alone. A header
-/// among whose names no x, y and z are found is refused, since the first three columns would be a
-/// guess.
+/// Columns are separated by semicolons, tabs, commas or blanks; a number may have a decimal comma
+/// where the comma does not separate. `#`, `//` and `%` begin comments. A header may stand in the
+/// last comment before the first point. A header with names among which x, y and z cannot be
+/// told is refused. A line with the number of points alone may come first.
 pub(super) fn read(bytes: &[u8]) -> Result<Raw, LoadError> {
+    let layout = Layout::find(bytes)?;
     let mut raw = Raw::default();
-    let mut columns = [0, 1, 2];
-    let mut header_seen = false;
-    for line in Lines::new(bytes, &COMMENTS) {
-        if raw.vertices.is_empty() && !header_seen {
-            if is_header(&line.text) {
-                header_seen = true;
-                columns = named_columns(&line.text, line.number)?;
-                continue;
-            }
-            if is_numbered(&line.text) {
-                let expected = "column names x, y and z instead of column numbers, or no header";
-                let (number, text) = (line.number, &line.text);
-                return Err(LoadError::line(Format::Xyz, number, expected, text));
-            }
-            columns = commented_columns(bytes, fields(&line.text).len()).unwrap_or(columns);
+    let mut last = 1;
+    for line in Lines::new(bytes, COMMENTS) {
+        last = line.number;
+        if line.number < layout.first {
+            continue;
         }
-        let point = point(&line.text, columns).ok_or_else(|| {
+        let refuse = || {
             let expected = "three numbers x y z";
             LoadError::line(Format::Xyz, line.number, expected, &line.text)
-        })?;
-        raw.vertices.push(point);
-    }
-    Ok(raw)
-}
-
-fn fields(line: &str) -> Vec<&str> {
-    match [';', ','].into_iter().find(|c| line.contains(*c)) {
-        Some(separator) => line.split(separator).map(str::trim).collect(),
-        None => line.split_whitespace().collect(),
-    }
-}
-
-/// A number, perhaps with a decimal comma: where commas separate, no field has one.
-fn value(field: &str) -> Option<f64> {
-    number(&field.replace(',', "."))
-}
-
-fn point(line: &str, columns: [usize; 3]) -> Option<Point3<f64>> {
-    let fields = fields(line);
-    let coordinate = |axis: usize| match *fields.get(columns[axis])? {
-        // A missing value: the row is dropped and counted.
-        "" => Some(f64::NAN),
-        field => value(field),
-    };
-    Some(Point3::new(coordinate(0)?, coordinate(1)?, coordinate(2)?))
-}
-
-/// Column names, or the number of points that some programs write first.
-fn is_header(line: &str) -> bool {
-    let fields = fields(line);
-    let names = fields.len() >= 3 && fields.iter().all(|f| value(unquoted(f)).is_none());
-    let count = fields.len() == 1 && fields[0].parse::<u64>().is_ok();
-    names || count
-}
-
-/// The header of a table with an index and without names, as pandas writes it: `,0,1,2`.
-fn is_numbered(line: &str) -> bool {
-    let fields = fields(line);
-    fields.len() > 3
-        && fields[0].is_empty()
-        && fields[1..]
-            .iter()
-            .enumerate()
-            .all(|(k, field)| *field == k.to_string())
-}
-
-/// The columns that a header names. A line with the number of points alone names none.
-fn named_columns(line: &str, number: usize) -> Result<[usize; 3], LoadError> {
-    let names = fields(line);
-    if names.len() == 1 {
-        return Ok([0, 1, 2]);
-    }
-    table_header::columns(&names).map_err(|why| {
-        let expected = match why {
-            Unnamed::None => "a header with columns named x, y and z (or no header)",
-            Unnamed::Several => "a header with one group of columns named x, y and z",
         };
-        LoadError::line(Format::Xyz, number, expected, line)
-    })
+        raw.vertices
+            .push(layout.point(&line.text).ok_or_else(refuse)?);
+    }
+    match layout.count {
+        Some(count) if count as usize > raw.vertices.len() => {
+            let expected = format!("{count} points, {} read", raw.vertices.len());
+            Err(LoadError::end_of_text(Format::Xyz, last, &expected))
+        }
+        _ => Ok(raw),
+    }
 }
 
-/// The columns that the last comment before the first row names, if it names as many columns as the
-/// row has fields.
-fn commented_columns(bytes: &[u8], count: usize) -> Option<[usize; 3]> {
-    let lines = bytes
-        .split(|byte| *byte == b'\n')
-        .map(String::from_utf8_lossy);
-    let comments = lines
-        .map(|line| line.trim().to_owned())
-        .take_while(|line| line.is_empty() || COMMENTS.iter().any(|c| line.starts_with(c)));
-    let last = comments.filter(|line| !line.is_empty()).last()?;
-    let header = last.trim_start_matches(['#', '/', '%']).trim_start();
-    let names = fields(header);
-    (names.len() == count)
-        .then(|| table_header::columns(&names).ok())
-        .flatten()
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Separator {
+    Sign(char),
+    Blanks,
 }
 
-fn unquoted(field: &str) -> &str {
-    field.trim_matches(['"', '\''])
+/// Where the points begin and how a line is read.
+struct Layout {
+    separator: Separator,
+    decimal_comma: bool,
+    columns: [usize; 3],
+    /// The line of the first point.
+    first: usize,
+    /// Points that the file promises.
+    count: Option<u64>,
+}
+
+impl Layout {
+    fn find(bytes: &[u8]) -> Result<Self, LoadError> {
+        let mut layout = Self {
+            separator: Separator::Blanks,
+            decimal_comma: false,
+            columns: [0, 1, 2],
+            first: usize::MAX,
+            count: None,
+        };
+        let mut header: Option<(usize, String)> = None;
+        let mut lines = Lines::new(bytes, COMMENTS);
+        let Some(mut line) = lines.next() else {
+            return Ok(layout);
+        };
+        if let Ok(count) = line.text.parse() {
+            layout.count = Some(count);
+            let Some(next) = lines.next() else {
+                let expected = "three numbers x y z";
+                return Err(LoadError::line(
+                    Format::Xyz,
+                    line.number,
+                    expected,
+                    &line.text,
+                ));
+            };
+            line = next;
+        }
+        layout.separate(&line.text);
+        let second = lines.next();
+        if layout.is_header(&line.text, second.as_ref().map(|l| l.text.as_ref())) {
+            header = Some((line.number, line.text.clone().into_owned()));
+            layout.first = second.as_ref().map_or(usize::MAX, |l| l.number);
+            if let Some(second) = &second {
+                layout.separate(&second.text);
+            }
+        } else {
+            layout.first = line.number;
+            second
+                .as_ref()
+                .inspect(|l| layout.decimal_comma &= layout.comma_is_decimal(&l.text));
+        }
+        if let Some((number, text)) = header {
+            layout.columns = layout.named(&text, number)?;
+        } else if let Some(comment) = comment_before(bytes, layout.first) {
+            // A comment may say anything; only names of coordinates count.
+            let fields = comment_fields(&comment);
+            let width = layout.fields(&line.text).len();
+            let names: Vec<&str> = fields.iter().map(String::as_str).collect();
+            if names.len() == width
+                && let Ok(columns) = table_header::columns(&names)
+            {
+                layout.columns = columns;
+            }
+        }
+        Ok(layout)
+    }
+
+    /// Chooses the separator by the look of one line.
+    fn separate(&mut self, line: &str) {
+        let sign = [';', '\t', ',']
+            .into_iter()
+            .find(|sign| line.contains(*sign));
+        self.separator = match sign {
+            Some(',') if blanks_and_decimal_commas(line) => Separator::Blanks,
+            Some(sign) => Separator::Sign(sign),
+            None => Separator::Blanks,
+        };
+        self.decimal_comma = self.separator != Separator::Sign(',') && self.comma_is_decimal(line);
+    }
+
+    fn comma_is_decimal(&self, line: &str) -> bool {
+        line.contains(',') && self.fields(line).iter().all(|f| !f.contains('.'))
+    }
+
+    fn fields<'a>(&self, line: &'a str) -> Vec<&'a str> {
+        match self.separator {
+            Separator::Sign(sign) => line.split(sign).map(str::trim).collect(),
+            Separator::Blanks => line.split_whitespace().collect(),
+        }
+    }
+
+    fn number(&self, field: &str) -> Option<f64> {
+        let field = field.trim_matches(['"', '\'']);
+        match self.decimal_comma && field.contains(',') {
+            true => number(&field.replacen(',', ".", 1)),
+            false => number(field),
+        }
+    }
+
+    fn point(&self, line: &str) -> Option<Point3<f64>> {
+        // Commas and blanks may be mixed from line to line.
+        let has_comma = line.contains(',');
+        let mixed = match self.separator {
+            Separator::Blanks => has_comma && !self.decimal_comma,
+            Separator::Sign(',') => !has_comma,
+            Separator::Sign(_) => false,
+        };
+        let fields = if mixed {
+            line.split([',', ' ', '\t'])
+                .filter(|f| !f.is_empty())
+                .collect()
+        } else {
+            self.fields(line)
+        };
+        let coordinate = |axis: usize| match *fields.get(self.columns[axis])? {
+            // A missing value: the row is dropped and counted.
+            "" => Some(f64::NAN),
+            field => self.number(field),
+        };
+        Some(Point3::new(coordinate(0)?, coordinate(1)?, coordinate(2)?))
+    }
+
+    /// Names, or the numbers 0, 1, 2 … that stand for names.
+    fn is_header(&self, line: &str, next: Option<&str>) -> bool {
+        let fields = self.fields(line);
+        let names = |f: &&&str| !f.is_empty() && self.number(f).is_none();
+        let unnamed = fields.iter().filter(names).count();
+        if fields.len() >= 3 && unnamed > 0 {
+            // A row with one bad number is no header.
+            return 2 * unnamed > fields.len();
+        }
+        let rest = fields.strip_prefix(&[""]).unwrap_or(&fields);
+        let counted = rest.len() >= 3 && rest.iter().enumerate().all(|(i, f)| *f == i.to_string());
+        let fractions = next.is_some_and(|n| n.contains('.') || self.decimal_comma);
+        counted && self.separator != Separator::Blanks && fractions
+    }
+
+    fn named(&self, header: &str, line: usize) -> Result<[usize; 3], LoadError> {
+        let separated = self.fields(header);
+        // The names may be separated by blanks or commas above columns of another kind.
+        let fields = if separated.len() >= 3 {
+            separated
+        } else {
+            header
+                .split([',', ';', '\t', ' '])
+                .filter(|f| !f.is_empty())
+                .collect()
+        };
+        if let Some(at) = fields.iter().position(|f| *f == "0") {
+            let counted = (0..3).all(|i| fields.get(at + i).is_some_and(|f| *f == i.to_string()));
+            if counted {
+                return Ok([at, at + 1, at + 2]);
+            }
+        }
+        table_header::columns(&fields).map_err(|why| {
+            let expected = match why {
+                Unnamed::None => "a header with columns named x, y and z (or no header)",
+                Unnamed::Several => "a header with one group of columns named x, y and z",
+            };
+            LoadError::line(Format::Xyz, line, expected, header)
+        })
+    }
+}
+
+/// Whether all blank-separated fields are numbers with one decimal comma or none.
+fn blanks_and_decimal_commas(line: &str) -> bool {
+    let number = |field: &str| {
+        let (whole, part) = field.split_once(',').unwrap_or((field, "0"));
+        let digits = |t: &str| !t.is_empty() && t.bytes().all(|b| b.is_ascii_digit());
+        let exponent = part.split(['e', 'E']).next().unwrap_or_default();
+        digits(whole.trim_start_matches(['+', '-'])) && digits(exponent)
+    };
+    let fields: Vec<&str> = line.split_whitespace().collect();
+    fields.len() >= 3 && fields.iter().all(|f| number(f))
+}
+
+/// The last comment line before a line.
+fn comment_before(bytes: &[u8], line: usize) -> Option<String> {
+    let before = Lines::new(bytes, &[]).take_while(|l| l.number < line);
+    let comments = before.filter(|l| COMMENTS.iter().any(|c| l.text.starts_with(c)));
+    comments.last().map(|l| l.text.into_owned())
+}
+
+fn comment_fields(comment: &str) -> Vec<String> {
+    let bare = comment.trim_start_matches(['#', '/', '%', ' ', '\t']);
+    let sign = [';', '\t', ',']
+        .into_iter()
+        .find(|sign| bare.contains(*sign));
+    match sign {
+        Some(sign) => bare.split(sign).map(|f| f.trim().to_owned()).collect(),
+        None => bare.split_whitespace().map(str::to_owned).collect(),
+    }
 }
 
 #[cfg(test)]
@@ -132,6 +254,13 @@ mod tests {
             "x,y,z\r\n1,2,3\r\n4, 5, 6",
             "\"id\";\"Z\";\"Y\";\"X\"\n9;3;2;1\n9;6;5;4\n",
             "2\n1\t2\t3\t255\n4\t5\t6\t255\n",
+            "# id x y z\n7 1 2 3\n7 4 5 6\n",
+            "//R G B X Y Z\n9 9 9 1 2 3\n9 9 9 4 5 6\n",
+            ",0,1,2\n0,1.0,2.0,3.0\n1,4.0,5.0,6.0\n",
+            "0,1,2\n1.0,2.0,3.0\n4.0,5.0,6.0\n",
+            "x;y;z\n1,0;2,0;3,0\n4,0;5,0;6,0\n",
+            "1,0 2,0 3,0\n4,0 5,0 6,0\n",
+            "x y z\n1, 2, 3,\n4 5 6\n",
         ] {
             let raw = read(text.as_bytes()).unwrap();
             let expected = [Point3::new(1.0, 2.0, 3.0), Point3::new(4.0, 5.0, 6.0)];
@@ -140,43 +269,26 @@ mod tests {
     }
 
     #[test]
+    fn points_of_whole_numbers_are_no_header() {
+        let raw = read(b"0 1 2\n3 4 5\n").unwrap();
+        assert_eq!(raw.vertices.len(), 2);
+        assert_eq!(read(b"0,1,2\n3,4,5\n").unwrap().vertices.len(), 2);
+    }
+
+    #[test]
     fn the_bad_line_is_named() {
-        for (text, bad) in [("1 2 3\n4 5\n", 2), ("x y z\nfoo bar baz\n", 2), ("a", 1)] {
+        for (text, bad) in [
+            ("1 2 3\n4 5\n", 2),
+            ("x y z\nfoo bar baz\n", 2),
+            ("a", 1),
+            ("lat,lon,height\n1,2,3\n", 1),
+            ("3\n1 2 3\n4 5 6\n", 3),
+        ] {
             let error = read(text.as_bytes()).err().unwrap();
             assert!(
                 matches!(error, LoadError::Line { line, .. } if line == bad),
                 "{error}"
             );
-        }
-    }
-
-    #[test]
-    fn columns_are_found_by_their_names() {
-        let expected = [Point3::new(1.0, 2.0, 3.5), Point3::new(4.0, 5.0, 6.0)];
-        for text in [
-            "timestamp,x [m],y [m],z [m]\n17,1,2,3.5\n18,4,5,6\n",
-            "id,pos_x,pos_y,pos_z\n0,1,2,3.5\n1,4,5,6\n",
-            "\"Result\",\"Points:0\",\"Points:1\",\"Points:2\"\n9,1,2,3.5\n9,4,5,6\n",
-            "# id x y z\n0 1 2 3.5\n1 4 5 6\n",
-            "x;y;z\n1,0;2,0;3,5\n4,0;5,0;6,0\n",
-            "1,0;2,0;3,5\n4,0;5,0;6,0\n",
-        ] {
-            assert_eq!(read(text.as_bytes()).unwrap().vertices, expected, "{text}");
-        }
-    }
-
-    #[test]
-    fn headers_that_name_no_coordinates_are_refused_and_shown() {
-        for (text, shown) in [
-            ("a,b,c\n1,2,3\n", "a,b,c"),
-            (",0,1,2\n0,1,2,3\n", "column names"),
-            (
-                "left_x,left_y,left_z,right_x,right_y,right_z\n1,2,3,4,5,6\n",
-                "one group",
-            ),
-        ] {
-            let error = read(text.as_bytes()).err().unwrap().to_string();
-            assert!(error.contains(shown) && error.contains("line 1"), "{error}");
         }
     }
 

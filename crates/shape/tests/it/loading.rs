@@ -128,15 +128,7 @@ fn unknown_empty_and_truncated_files_name_what_was_expected() {
         for cut in 1..whole.len() {
             if let Err(error) = read_cloud(&whole[..cut], extension) {
                 let text = error.to_string();
-                let place = [
-                    "line",
-                    "Line",
-                    "byte",
-                    "vertex",
-                    "vertices",
-                    "no finite",
-                    "PLY",
-                ];
+                let place = ["line", "byte", "no finite", "the elements", "the arrays"];
                 assert!(place.iter().any(|p| text.contains(p)), "{text}");
             }
         }
