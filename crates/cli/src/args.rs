@@ -145,9 +145,10 @@ fn count_in<const LOW: usize, const HIGH: usize>(text: &str) -> Result<usize, St
 /// How clouds are read and fitted.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct CloudOptions {
-    /// Unit of the coordinates in the file.
-    #[arg(long, value_enum, default_value_t = Unit::M)]
-    pub(crate) unit: Unit,
+    /// Unit of the coordinates in the file. Default: metres, where an extent above 2 m or below 5 mm is
+    /// refused.
+    #[arg(long, value_enum)]
+    pub(crate) unit: Option<Unit>,
     /// Number of points sampled from a mesh, uniformly by area.
     #[arg(long, default_value_t = 25_000, value_parser = count_in::<100, 10_000_000>)]
     pub(crate) samples: usize,

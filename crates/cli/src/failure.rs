@@ -4,6 +4,8 @@ use std::fmt::Display;
 use std::path::Path;
 use std::process::ExitCode;
 
+use crate::files;
+
 /// A failure with its message and its exit code (2 usage, 3 input, 4 numbers, 1 anything else).
 #[derive(Debug)]
 pub(crate) struct Failure {
@@ -20,6 +22,9 @@ impl Failure {
 
     /// A file is not what it should be.
     pub(crate) fn input(path: &Path, reason: impl Display) -> Self {
+        if files::is_standard_input(path) {
+            return Self::new(3, format!("standard input: {reason}"));
+        }
         Self::new(3, format!("{}: {reason}", path.display()))
     }
 

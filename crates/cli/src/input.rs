@@ -21,7 +21,7 @@ use crate::output::warn;
 /// How far the length of a given direction may be from 1.
 const UNIT_TOLERANCE: f64 = 1e-6;
 
-/// The bytes of a file.
+/// The bytes of a file; of standard input for `-`.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     files::bytes(path).map_err(|e| Failure::input(path, e))
 }
@@ -31,22 +31,27 @@ pub(crate) fn table(path: &Path, columns: usize) -> Result<Table, Failure> {
     Table::from_npy_with_columns(&read(path)?, columns).map_err(|e| Failure::input(path, e))
 }
 
-/// A table of numbers from a `.npy` file, of as many columns as it has.
-pub(crate) fn any_table(path: &Path) -> Result<Table, Failure> {
-    Table::from_npy(&read(path)?).map_err(|e| Failure::input(path, e))
-}
-
 /// A readable name for what a file holds.
 pub(crate) fn stem(path: &Path) -> String {
-    path.file_stem()
-        .map_or_else(|| "object".to_owned(), |s| s.to_string_lossy().into_owned())
+    let stem = path.file_stem().filter(|_| !files::is_standard_input(path));
+    stem.map_or_else(|| "object".to_owned(), |s| s.to_string_lossy().into_owned())
 }
 
 /// A cloud in metres, with warnings about what was dropped and about units that look wrong.
 ///
-/// A mesh is sampled by area; the same seed gives the same points.
+/// A mesh is sampled by area; the same seed gives the same points. Where no unit was given, an extent
+/// that no object for a hand has is refused.
 pub(crate) fn cloud(path: &Path, options: &CloudOptions, seed: u64) -> Result<PointCloud, Failure> {
-    let loaded = load(path)?.scaled(options.unit.metres());
+    let mut loaded = load(path)?;
+    match options.unit {
+        Some(unit) => loaded = loaded.scaled(unit.metres()),
+        None => {
+            if let Some(why) = loaded.implausible() {
+                let advice = "give --unit mm, cm, in or m";
+                return Err(Failure::input(path, format!("{why}; {advice}")));
+            }
+        }
+    }
     for warning in &loaded.warnings {
         let hint = match warning {
             Warning::Unit { .. } => " (--unit mm, cm, m, in)",
@@ -62,8 +67,13 @@ pub(crate) fn cloud(path: &Path, options: &CloudOptions, seed: u64) -> Result<Po
 
 /// A cloud or mesh in the unit of its file.
 pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
+    loaded(path, &read(path)?)
+}
+
+/// A cloud or mesh from the bytes of a file, in the unit of the file.
+pub(crate) fn loaded(path: &Path, bytes: &[u8]) -> Result<Loaded, Failure> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-    shape::io::read_cloud(&read(path)?, extension).map_err(|e| Failure::input(path, e))
+    shape::io::read_cloud(bytes, extension).map_err(|e| Failure::input(path, e))
 }
 
 /// Fits a cloud; numerical refusals say what to try.

@@ -88,39 +88,28 @@ impl Table {
     pub fn from_npy(bytes: &[u8]) -> Result<Self, NpyError> {
         let header = Header::parse(bytes)?;
         let [rows, columns] = header.shape[..] else {
-            return Err(NpyError::Shape {
-                found: header.shape,
-                columns: "M".to_owned(),
-            });
+            return Err(header.wrong_shape());
         };
-        if columns == 0 {
-            return Err(NpyError::Shape {
-                found: vec![rows, columns],
-                columns: "M".to_owned(),
-            });
-        }
-        let data = &bytes[header.data_start..];
-        let size = header.number.size();
-        // The size is compared before anything is allocated.
-        let expected = u128::from(rows)
-            .saturating_mul(u128::from(columns))
-            .saturating_mul(size as u128);
-        if expected > data.len() as u128 {
-            return Err(NpyError::Length {
-                expected: expected.saturating_add(header.data_start as u128),
-                found: bytes.len(),
-            });
-        }
-        let (rows, columns) = (rows as usize, columns as usize);
-        let at = |index: usize| header.number.read(&data[index * size..(index + 1) * size]);
-        let values = if header.fortran_order {
-            (0..rows * columns)
-                .map(|i| at((i % columns) * rows + i / columns))
-                .collect()
-        } else {
-            (0..rows * columns).map(at).collect()
+        header.table(bytes, rows, columns)
+    }
+
+    /// Reads an array of any number of axes as rows: an array of one axis is one row, and all axes
+    /// but the first are one after the other in a row, as NumPy's `reshape(N, -1)` puts them.
+    ///
+    /// # Errors
+    /// Those of [`Table::from_npy`]; an array of three axes or more in Fortran order.
+    pub fn from_npy_flattened(bytes: &[u8]) -> Result<Self, NpyError> {
+        let header = Header::parse(bytes)?;
+        let (rows, columns) = match header.shape[..] {
+            [columns] => (1, columns),
+            [rows, columns] => (rows, columns),
+            [rows, ref rest @ ..] if !header.fortran_order && !rest.is_empty() => {
+                let product = rest.iter().try_fold(1_u64, |n, axis| n.checked_mul(*axis));
+                (rows, product.ok_or_else(|| header.wrong_shape())?)
+            }
+            _ => return Err(header.wrong_shape()),
         };
-        Ok(Self { columns, values })
+        header.table(bytes, rows, columns)
     }
 
     /// Reads a table with a known number of columns.
@@ -235,6 +224,42 @@ struct Header {
 }
 
 impl Header {
+    fn wrong_shape(&self) -> NpyError {
+        NpyError::Shape {
+            found: self.shape.clone(),
+            columns: "M".to_owned(),
+        }
+    }
+
+    /// The numbers behind the header, as rows.
+    fn table(&self, bytes: &[u8], rows: u64, columns: u64) -> Result<Table, NpyError> {
+        if columns == 0 {
+            return Err(self.wrong_shape());
+        }
+        let data = &bytes[self.data_start..];
+        let size = self.number.size();
+        // The size is compared before anything is allocated.
+        let expected = u128::from(rows)
+            .saturating_mul(u128::from(columns))
+            .saturating_mul(size as u128);
+        if expected > data.len() as u128 {
+            return Err(NpyError::Length {
+                expected: expected.saturating_add(self.data_start as u128),
+                found: bytes.len(),
+            });
+        }
+        let (rows, columns) = (rows as usize, columns as usize);
+        let at = |index: usize| self.number.read(&data[index * size..(index + 1) * size]);
+        let values = if self.fortran_order {
+            (0..rows * columns)
+                .map(|i| at((i % columns) * rows + i / columns))
+                .collect()
+        } else {
+            (0..rows * columns).map(at).collect()
+        };
+        Ok(Table { columns, values })
+    }
+
     fn parse(bytes: &[u8]) -> Result<Self, NpyError> {
         if !bytes.starts_with(MAGIC) {
             return Err(NpyError::Magic);

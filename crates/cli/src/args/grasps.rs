@@ -10,7 +10,7 @@ use super::ConventionOptions;
 #[derive(Debug, Args)]
 pub(crate) struct QualityOptions {
     /// The grasps: a grasps.json, or rows of 6m+3 numbers in .npy or .csv for m contacts: the positions,
-    /// the inward unit normals, and the point about which torques are taken.
+    /// the inward unit normals, and the point about which torques are taken. `-` for standard input.
     pub(crate) grasps: PathBuf,
     /// Also compute volume, L-infinity, min-weight, least friction, smallest singular value and the
     /// normal force per load, one named column each.

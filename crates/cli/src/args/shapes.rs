@@ -17,7 +17,8 @@ pub(crate) enum Model {
 
 #[derive(Debug, Args)]
 pub(crate) struct FitOptions {
-    /// Clouds or meshes: .ply, .pcd, .xyz, .csv, .obj, .stl or .off.
+    /// Clouds or meshes: PLY, PCD, XYZ, CSV, OBJ, STL, OFF, glTF, GLB, NPY or NPZ; `-` for standard
+    /// input. The content decides the format.
     #[arg(required = true)]
     pub(crate) clouds: Vec<PathBuf>,
     /// File for the shape, or folder for the shapes of several clouds.
@@ -51,8 +52,8 @@ pub(crate) struct EvalOptions {
 pub(crate) struct MeshOptions {
     /// A shape file, as `moduli fit` writes it.
     pub(crate) shape: PathBuf,
-    /// File for the mesh, in the frame of the cloud. Its ending decides the format: `.ply`, `.obj`, `.stl` or `.off`;
-    /// PLY without an ending.
+    /// File for the mesh, in the frame of the cloud. Its ending decides the format: `.ply`, `.obj`, `.stl`, `.off`
+    /// or `.glb`; PLY without an ending.
     #[arg(short, long)]
     pub(crate) output: PathBuf,
     /// Number of circles of latitude.

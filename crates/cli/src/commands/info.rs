@@ -9,7 +9,7 @@ use record::{
     SphericalRecord,
 };
 use serde_json::{Map, Value, json};
-use shape::io::{Geometry, Loaded};
+use shape::io::{Geometry, Loaded, Warning};
 
 use crate::args::{Common, InfoOptions};
 use crate::failure::Failure;
@@ -64,7 +64,7 @@ fn facts(path: &Path) -> Result<Vec<Fact>, Failure> {
             Ok(file) => Ok(grasps_facts(&file)),
             // A cloud, a mesh, or something unknown, which the reader of clouds names.
             Err(GraspsFileError::Json(_)) if path.extension().is_none_or(|x| x != "json") => {
-                Ok(loaded_facts(&input::load(path)?))
+                Ok(loaded_facts(&input::loaded(path, &bytes)?))
             }
             Err(e) => Err(refused(&e)),
         },
@@ -227,7 +227,8 @@ fn loaded_facts(loaded: &Loaded) -> Vec<Fact> {
     }
     let size = high - low;
     let format = loaded.format.to_string();
-    vec![
+    let warnings: Vec<String> = loaded.warnings.iter().map(ToString::to_string).collect();
+    let mut facts = vec![
         fact(
             format!("{kind}, {} rows dropped, {format}", loaded.dropped),
             counts,
@@ -241,7 +242,15 @@ fn loaded_facts(loaded: &Loaded) -> Vec<Fact> {
             ),
             json!({
                 "dropped": loaded.dropped, "format": format, "extent": [size.x, size.y, size.z],
+                "warnings": warnings,
             }),
         ),
-    ]
+    ];
+    // The first line has the rows that were dropped.
+    let others = loaded
+        .warnings
+        .iter()
+        .filter(|w| !matches!(w, Warning::Dropped { .. }));
+    facts.extend(others.map(|w| fact(format!("note        {w}"), Value::Null)));
+    facts
 }

@@ -13,7 +13,7 @@ pub(crate) fn run(options: &MeshOptions) -> Result<(), Failure> {
     let format = MeshFormat::from_extension(extension.as_deref().unwrap_or("ply"));
     let format = format.ok_or_else(|| {
         Failure::usage(format!(
-            "-o {}: meshes are written as .ply, .obj, .stl or .off; give the file one of these endings",
+            "-o {}: meshes are written as .ply, .obj, .stl, .off or .glb; give the file one of these endings",
             options.output.display()
         ))
     })?;

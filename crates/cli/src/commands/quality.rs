@@ -55,8 +55,8 @@ struct Row {
 pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failure> {
     let named = input::convention(&options.convention)?;
     let asked = options.convention.convention.as_ref().map(|_| &named);
-    let (grasps, rule) = grasps::read_grasps(&options.grasps, asked)?;
-    let convention = convention(options, named, rule)?;
+    let set = grasps::read_grasps(&options.grasps, asked)?;
+    let (grasps, convention) = (set.grasps, convention(options, named, set.rule)?);
     let start = Instant::now();
     let path = &options.grasps;
     let rows = if options.all {
@@ -85,6 +85,7 @@ pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failu
         output::write_file(path, &output::encode(&proofs)?)?;
     }
     let mut line = summary(&rows, options.metric, &convention, seconds);
+    line.warnings.extend(set.warnings);
     line.warnings.extend(unit_warning(&grasps));
     line.warnings.iter().for_each(output::warn);
     if common.json {

@@ -325,7 +325,7 @@ fn points_that_surround_nothing_are_refused() {
     );
     std::fs::write(
         folder.path().join("line.csv"),
-        "x,y,z\n0,0,0\n1,0,0\n2,0,0\n3,0,0\n4,0,0\n",
+        "x,y,z\n0,0,0\n0.1,0,0\n0.2,0,0\n0.3,0,0\n0.4,0,0\n",
     )
     .unwrap();
     refused(

@@ -3,6 +3,7 @@
 mod ascend_transfer;
 mod commands;
 mod common;
+mod formats;
 mod hands;
 mod library;
 mod metrics;

@@ -57,9 +57,9 @@ fn a_mesh_has_the_format_of_its_name() {
         let format = name[2..].to_uppercase();
         assert_eq!(info["format"], format.as_str(), "{name}");
     }
-    let glb = moduli(here, &["mesh", "egg.shape", "-o", "m.glb"]);
-    refused(&glb, 2, &["m.glb", ".off"]);
-    assert!(!here.join("m.glb").exists());
+    let fbx = moduli(here, &["mesh", "egg.shape", "-o", "m.fbx"]);
+    refused(&fbx, 2, &["m.fbx", ".off"]);
+    assert!(!here.join("m.fbx").exists());
 }
 
 #[cfg(unix)]

@@ -161,7 +161,7 @@ fn likely(text: &str) -> Content {
     let words = ["v", "vn", "vt", "f", "o", "g", "s", "mtllib", "usemtl", "l"];
     let obj = |l: &&str| words.contains(&l.split_whitespace().next().unwrap_or_default());
     let has_vertex = lines.iter().any(|l| l.starts_with("v "));
-    if has_vertex && lines.iter().all(|l| obj(&l)) {
+    if has_vertex && lines.iter().all(obj) {
         return Content::Likely(Format::Obj);
     }
     let numbers = |l: &&str| {
@@ -173,7 +173,7 @@ fn likely(text: &str) -> Content {
     };
     let body = lines.get(1..lines.len().saturating_sub(1));
     match body {
-        Some(body) if !body.is_empty() && body.iter().all(|l| numbers(&l)) => {
+        Some(body) if !body.is_empty() && body.iter().all(numbers) => {
             Content::Likely(Format::Xyz)
         }
         _ => Content::Unknown,

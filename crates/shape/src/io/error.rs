@@ -6,10 +6,7 @@ use super::format::Format;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LoadError {
     /// Neither the extension nor the content belongs to a format that is read.
-    #[error(
-        "files of type `{extension}` are not supported; expected {}",
-        Format::EXTENSIONS
-    )]
+    #[error("{}; expected {}", unsupported(.extension), Format::EXTENSIONS)]
     Unsupported {
         /// The extension given.
         extension: String,
@@ -23,11 +20,8 @@ pub enum LoadError {
         advice: &'static str,
     },
     /// The file has no bytes.
-    #[error("byte 0: the file is empty; expected {format} data")]
-    Empty {
-        /// The format looked for.
-        format: Format,
-    },
+    #[error("byte 0: the file is empty; expected a cloud or a mesh")]
+    Empty,
     /// A line of a text format cannot be understood.
     #[error("{format} line {line}: expected {expected}, found {found}")]
     Line {
@@ -70,6 +64,13 @@ pub enum LoadError {
         /// Rows dropped.
         dropped: usize,
     },
+}
+
+fn unsupported(extension: &str) -> String {
+    if extension.is_empty() {
+        return "the content is of no format that is read".to_owned();
+    }
+    format!("files of type `{extension}` are not supported")
 }
 
 impl LoadError {

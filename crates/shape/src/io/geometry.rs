@@ -72,6 +72,30 @@ impl fmt::Display for Warning {
     }
 }
 
+/// An extent that no object for a hand has, if the file is in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImplausibleExtent {
+    /// Largest side of the bounding box, taken as metres.
+    pub extent: f64,
+}
+
+impl fmt::Display for ImplausibleExtent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (least, most) = PLAUSIBLE_EXTENT;
+        let extent = Metres(self.extent);
+        write!(
+            f,
+            "the largest extent is {extent} m, and objects for a hand have {least} to {most} m"
+        )?;
+        let likely = [("millimetres", 1e-3), ("centimetres", 1e-2)];
+        let fits = |(_, factor): &&(&str, f64)| (0.02..=most).contains(&(self.extent * factor));
+        match likely.iter().find(fits) {
+            Some((unit, _)) => write!(f, "; the file is likely in {unit}"),
+            None => write!(f, "; the file is likely not in metres"),
+        }
+    }
+}
+
 /// A length in metres, short whatever its size.
 struct Metres(f64);
 
@@ -203,17 +227,21 @@ impl Loaded {
         }
     }
 
-    fn warn(&mut self) {
+    /// Why the coordinates are hardly metres: the largest extent of all points is below 5 mm, or that
+    /// of the middle nine tenths along each axis is above 2 m, so that a few points far away do not
+    /// decide. What [`PointCloud::new`] refuses is left to it.
+    pub fn implausible(&self) -> Option<ImplausibleExtent> {
         let points = self.vertices();
-        let extent = (0..3)
-            .map(|axis| {
-                let values = points.iter().map(|p| p[axis]);
-                let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-                    (a.min(x), b.max(x))
-                });
-                high - low
-            })
-            .fold(0.0, f64::max);
+        let (least, most) = PLAUSIBLE_EXTENT;
+        let extent = largest_extent(points);
+        let typical = (0..3).map(|axis| typical_extent(points, axis));
+        let small = (PointCloud::LEAST_EXTENT..least).contains(&extent);
+        let large = extent <= PointCloud::FARTHEST && typical.fold(0.0, f64::max) > most;
+        (small || large).then_some(ImplausibleExtent { extent })
+    }
+
+    fn warn(&mut self) {
+        let extent = largest_extent(self.vertices());
         let plausible = (PLAUSIBLE_EXTENT.0..=PLAUSIBLE_EXTENT.1).contains(&extent);
         let rows = self.dropped;
         self.warnings = [
@@ -230,6 +258,31 @@ impl Loaded {
         .into_iter()
         .flatten()
         .collect();
+    }
+}
+
+/// Largest side of the bounding box.
+fn largest_extent(points: &[Point3<f64>]) -> f64 {
+    let side = |axis: usize| {
+        let values = points.iter().map(|p| p[axis]);
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+            (a.min(x), b.max(x))
+        });
+        high - low
+    };
+    (0..3).map(side).fold(0.0, f64::max)
+}
+
+/// Extent along an axis without the outer twentieth at either end, from at most 10,000 points.
+fn typical_extent(points: &[Point3<f64>], axis: usize) -> f64 {
+    const LOOKED_AT: usize = 10_000;
+    let step = points.len().div_ceil(LOOKED_AT).max(1);
+    let mut values: Vec<f64> = points.iter().step_by(step).map(|p| p[axis]).collect();
+    values.sort_unstable_by(f64::total_cmp);
+    let outer = values.len() / 20;
+    match (values.get(outer), values.len().checked_sub(outer + 1)) {
+        (Some(low), Some(high)) => values[high] - low,
+        _ => 0.0,
     }
 }
 
@@ -313,6 +366,27 @@ mod tests {
         };
         let loaded = Loaded::new(Format::Stl, raw).unwrap();
         assert_eq!(loaded.warnings, [Warning::Unit { extent: 75.0 }]);
-        assert_eq!(loaded.scaled(1e-3).warnings, []);
+        let why = loaded.implausible().unwrap().to_string();
+        assert!(
+            why.contains("75.000 m") && why.contains("millimetres"),
+            "{why}"
+        );
+        let scaled = loaded.scaled(1e-3);
+        assert_eq!((scaled.implausible(), scaled.warnings), (None, vec![]));
+    }
+
+    #[test]
+    fn one_point_far_away_does_not_decide_on_the_unit() {
+        let at = |i: usize| Point3::new(0.001 * i as f64, 0.0, 0.0);
+        let mut vertices: Vec<_> = (0..100).map(at).collect();
+        vertices[50].y = 1000.0;
+        let triangles = Vec::new();
+        let raw = Raw {
+            vertices,
+            triangles,
+        };
+        let loaded = Loaded::new(Format::Xyz, raw).unwrap();
+        assert_eq!(loaded.warnings, [Warning::Unit { extent: 1000.0 }]);
+        assert_eq!(loaded.implausible(), None);
     }
 }

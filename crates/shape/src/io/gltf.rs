@@ -61,7 +61,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raw, LoadError> {
     Ok(raw)
 }
 
-fn indices(list: &Vec<Value>) -> impl Iterator<Item = usize> {
+fn indices(list: &[Value]) -> impl Iterator<Item = usize> {
     list.iter()
         .filter_map(|v| usize::try_from(v.as_u64()?).ok())
 }

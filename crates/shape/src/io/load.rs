@@ -17,22 +17,22 @@ use super::{array, gltf, obj, off, pcd, ply, stl, xyz, zip};
 /// Anything that is not as its format wants it, with its line or byte; a format that is not read,
 /// by its name.
 pub fn read_cloud(bytes: &[u8], extension: &str) -> Result<Loaded, LoadError> {
+    if bytes.is_empty() {
+        return Err(LoadError::Empty);
+    }
     let extension = extension.trim_start_matches('.');
     let named = Format::from_extension(extension);
     let format = match (recognise(bytes), named) {
         (Content::Foreign(kind, advice), _) => return Err(LoadError::Foreign { kind, advice }),
         (Content::Known(format), _) | (Content::Unknown, Some(format)) => Some(format),
         // Columns of numbers are also the body of an OFF without its keyword.
-        (Content::Likely(_), Some(Format::Off)) => named,
+        (Content::Likely(Format::Xyz), Some(Format::Off)) => named,
         (Content::Likely(format), _) => Some(format),
         (Content::Unknown, None) => foreign_by_name(extension)?,
     };
     let format = format.ok_or_else(|| LoadError::Unsupported {
         extension: extension.to_owned(),
     })?;
-    if bytes.is_empty() {
-        return Err(LoadError::Empty { format });
-    }
     let raw: Raw = match format {
         Format::Ply => ply::read(bytes)?,
         Format::Pcd => pcd::read(bytes)?,

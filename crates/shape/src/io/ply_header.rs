@@ -113,7 +113,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header, LoadError> {
         let words: Vec<&str> = line.split_whitespace().collect();
         let refuse = |expected: &str| LoadError::line(Format::Ply, number, expected, line.trim());
         match words[..] {
-            ["ply" | "PLY" | "Ply"] if number == 1 => {}
+            [word] if number == 1 && word.eq_ignore_ascii_case("ply") => {}
             _ if number == 1 => return Err(refuse("`ply`")),
             [] | ["comment" | "obj_info", ..] => {}
             ["format", name, ..] => {

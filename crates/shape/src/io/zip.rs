@@ -46,7 +46,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raw, LoadError> {
         let is_it = |e: &&Entry| e.name.eq_ignore_ascii_case(name);
         entries.iter().find(is_it)
     };
-    if let Some(entry) = POINTS.iter().find_map(|name| named(&name)) {
+    if let Some(entry) = POINTS.iter().find_map(named) {
         return array::read(&unpacked(entry)?);
     }
     let arrays = entries

@@ -1,7 +1,9 @@
 //! The tests of `shape` that use it from outside, as one program.
 
 mod common;
+mod formats;
 mod loading;
+mod mutations;
 mod open_containers;
 mod outliers;
 mod properties;

@@ -4,50 +4,60 @@ use std::path::Path;
 
 use grasp::{CentreRule, Contact, Convention, Grasp};
 use nalgebra::{Point3, UnitVector3, Vector3};
+use record::GraspsFile;
+use run::npy::Table;
 
 use crate::failure::Failure;
 use crate::input;
 
 /// Normals whose length is within this of 1 are made unit vectors.
 const NEARLY_UNIT: f64 = 0.01;
+/// Normals whose length is farther from 1 than this are counted, since they were made unit vectors.
+const UNIT: f64 = 1e-6;
 
-/// The grasps of a file, and the convention that it names if it names one.
+/// The grasps of a file.
+pub(super) struct GraspSet {
+    pub(super) grasps: Vec<Grasp>,
+    /// The convention that the file names.
+    pub(super) rule: Option<Convention>,
+    pub(super) warnings: Vec<String>,
+}
+
+/// The grasps of a file, whose content decides how it is read: a `grasps.json`, an array of NumPy, or
+/// a text of rows of numbers.
 ///
 /// The centre of torques comes with each row of numbers. In a `grasps.json` it is the one that the
 /// `asked` convention names, or that of the file where none was asked for.
-pub(super) fn read_grasps(
-    path: &Path,
-    asked: Option<&Convention>,
-) -> Result<(Vec<Grasp>, Option<Convention>), Failure> {
+pub(super) fn read_grasps(path: &Path, asked: Option<&Convention>) -> Result<GraspSet, Failure> {
+    let bytes = input::read(path)?;
+    let start = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
+    let mut reader = Reader { path, adjusted: 0 };
     let mut rule = None;
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-    let grasps = match extension {
-        "npy" => {
-            let table = input::any_table(path)?;
-            contacts_in(path, "the table", table.columns())?;
-            table
-                .rows()
-                .enumerate()
-                .map(|(row, cells)| from_row(path, row, cells))
-                .collect::<Result<Vec<_>, _>>()?
-        }
-        "csv" => read_csv(path)?,
-        "json" => {
-            let (grasps, convention) = read_json(path, asked)?;
-            rule = Some(convention);
-            grasps
-        }
-        _ => {
-            return Err(Failure::input(
-                path,
-                "expected a file of grasps whose name ends in .json, .npy or .csv",
-            ));
-        }
+    let named_json = path.extension().is_some_and(|e| e == "json");
+    let grasps = if bytes.starts_with(b"\x93NUMPY") {
+        let table = Table::from_npy_flattened(&bytes).map_err(|e| Failure::input(path, e))?;
+        contacts_in(path, "the table", table.columns())?;
+        let rows = table.rows().enumerate();
+        rows.map(|(row, cells)| reader.from_row(&format!("row {row}"), cells))
+            .collect::<Result<_, _>>()?
+    } else if named_json || start.trim_ascii_start().starts_with(b"{") {
+        let (grasps, convention) = reader.read_json(start, asked)?;
+        rule = Some(convention);
+        grasps
+    } else {
+        let rows = rows_of_text(path, start)?;
+        let grasp =
+            |(line, cells): &(usize, Vec<f64>)| reader.from_row(&format!("line {line}"), cells);
+        rows.iter().map(grasp).collect::<Result<_, _>>()?
     };
     if grasps.is_empty() {
         return Err(Failure::input(path, "there are no grasps in the file"));
     }
-    Ok((grasps, rule))
+    Ok(GraspSet {
+        grasps,
+        rule,
+        warnings: reader.warnings(),
+    })
 }
 
 /// The contacts of a row of 6m+3 numbers: m positions, m inward normals and the centre.
@@ -64,96 +74,135 @@ fn contacts_in(path: &Path, place: &str, columns: usize) -> Result<usize, Failur
     ))
 }
 
-/// A normal that is unit up to one per cent, made unit.
-fn unit_normal(normal: Vector3<f64>) -> UnitVector3<f64> {
-    if (normal.norm() - 1.0).abs() <= NEARLY_UNIT {
-        UnitVector3::new_normalize(normal)
-    } else {
-        UnitVector3::new_unchecked(normal)
-    }
+/// Makes grasps of numbers, and counts the normals that it changed.
+struct Reader<'a> {
+    path: &'a Path,
+    adjusted: usize,
 }
 
-/// A grasp from a row of numbers; `row` names it in errors.
-fn from_row(path: &Path, row: usize, cells: &[f64]) -> Result<Grasp, Failure> {
-    if let Some(column) = cells.iter().position(|v| !v.is_finite()) {
-        return Err(Failure::input(
-            path,
-            format!(
-                "row {row}, column {column} is {}; expected a finite number",
-                cells[column]
-            ),
-        ));
+impl Reader<'_> {
+    fn warnings(&self) -> Vec<String> {
+        let count = self.adjusted;
+        let said =
+            format!("{count} normals were not of unit length (within 1 %) and were normalised");
+        (count > 0).then_some(said).into_iter().collect()
     }
-    let triple = |k: usize| Vector3::new(cells[3 * k], cells[3 * k + 1], cells[3 * k + 2]);
-    let count = contacts_in(path, &format!("row {row}"), cells.len())?;
-    let contacts = (0..count)
-        .map(|k| Contact {
-            position: Point3::from(triple(k)),
-            inward_normal: unit_normal(triple(k + count)),
-        })
-        .collect();
-    Grasp::new(contacts, Point3::from(triple(2 * count)))
-        .map_err(|e| Failure::input(path, format!("row {row}: {e}")))
-}
 
-/// Comma-separated rows; a first row without any number is a header.
-fn read_csv(path: &Path) -> Result<Vec<Grasp>, Failure> {
-    let text = String::from_utf8(input::read(path)?)
-        .map_err(|_| Failure::input(path, "not a text file"))?;
-    let mut grasps = Vec::new();
-    for (number, line) in text.lines().enumerate() {
-        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
-        let header = number == 0 && cells.iter().all(|c| c.parse::<f64>().is_err());
-        if line.trim().is_empty() || header {
-            continue;
+    /// A normal that is unit up to one per cent, made unit.
+    fn unit_normal(&mut self, normal: Vector3<f64>) -> UnitVector3<f64> {
+        let excess = (normal.norm() - 1.0).abs();
+        if excess <= NEARLY_UNIT {
+            self.adjusted += usize::from(excess > UNIT);
+            UnitVector3::new_normalize(normal)
+        } else {
+            UnitVector3::new_unchecked(normal)
         }
-        let place = format!("line {}", number + 1);
-        contacts_in(path, &place, cells.len())?;
-        let parse = |(column, cell): (usize, &&str)| {
-            cell.parse::<f64>().map_err(|_| {
-                Failure::input(
-                    path,
-                    format!("{place}, column {column} is `{cell}`; expected a number"),
-                )
-            })
-        };
-        let cells: Vec<f64> = cells
-            .iter()
-            .enumerate()
-            .map(parse)
-            .collect::<Result<_, _>>()?;
-        grasps.push(from_row(path, grasps.len(), &cells)?);
     }
-    Ok(grasps)
-}
 
-/// The grasps of a `grasps.json`, and its convention.
-fn read_json(path: &Path, asked: Option<&Convention>) -> Result<(Vec<Grasp>, Convention), Failure> {
-    let file = input::grasps(path)?;
-    let convention = moduli::records::convention(&file.convention)
-        .map_err(|e| Failure::input(path, format!("convention `{}`: {e}", file.convention.name)))?;
-    let centre = match asked.unwrap_or(&convention).centre {
-        CentreRule::CloudMean => Point3::from(file.object.centre_m),
-        CentreRule::CentreOfMass => Point3::from(file.object.centre_of_mass_m),
-        CentreRule::ObjectOrigin | CentreRule::Given => Point3::origin(),
-    };
-    let grasps = file
-        .grasps
-        .iter()
-        .enumerate()
-        .map(|(i, g)| {
-            let contacts = g
-                .contacts_m
-                .iter()
-                .zip(&g.inward_normals)
+    /// A grasp from a row of numbers; `place` names it in errors.
+    fn from_row(&mut self, place: &str, cells: &[f64]) -> Result<Grasp, Failure> {
+        if let Some(column) = cells.iter().position(|v| !v.is_finite()) {
+            let value = cells[column];
+            let why = format!("{place}, column {column} is {value}; expected a finite number");
+            return Err(Failure::input(self.path, why));
+        }
+        let triple = |k: usize| Vector3::new(cells[3 * k], cells[3 * k + 1], cells[3 * k + 2]);
+        let count = contacts_in(self.path, place, cells.len())?;
+        let contacts = (0..count)
+            .map(|k| Contact {
+                position: Point3::from(triple(k)),
+                inward_normal: self.unit_normal(triple(k + count)),
+            })
+            .collect();
+        Grasp::new(contacts, Point3::from(triple(2 * count)))
+            .map_err(|e| Failure::input(self.path, format!("{place}: {e}")))
+    }
+
+    /// The grasps of a `grasps.json`, and its convention.
+    fn read_json(
+        &mut self,
+        bytes: &[u8],
+        asked: Option<&Convention>,
+    ) -> Result<(Vec<Grasp>, Convention), Failure> {
+        let path = self.path;
+        let file = GraspsFile::from_json(bytes).map_err(|e| Failure::input(path, e))?;
+        let convention = moduli::records::convention(&file.convention).map_err(|e| {
+            Failure::input(path, format!("convention `{}`: {e}", file.convention.name))
+        })?;
+        let centre = match asked.unwrap_or(&convention).centre {
+            CentreRule::CloudMean => Point3::from(file.object.centre_m),
+            CentreRule::CentreOfMass => Point3::from(file.object.centre_of_mass_m),
+            CentreRule::ObjectOrigin | CentreRule::Given => Point3::origin(),
+        };
+        let mut grasps = Vec::with_capacity(file.grasps.len());
+        for (i, g) in file.grasps.iter().enumerate() {
+            let pairs = g.contacts_m.iter().zip(&g.inward_normals);
+            let contacts = pairs
                 .map(|(c, n)| Contact {
                     position: Point3::from(*c),
-                    inward_normal: unit_normal(Vector3::from(*n)),
+                    inward_normal: self.unit_normal(Vector3::from(*n)),
                 })
                 .collect();
-            Grasp::new(contacts, centre)
-                .map_err(|e| Failure::input(path, format!("grasp {i}: {e}")))
-        })
-        .collect::<Result<_, _>>()?;
-    Ok((grasps, convention))
+            let grasp = Grasp::new(contacts, centre);
+            grasps.push(grasp.map_err(|e| Failure::input(path, format!("grasp {i}: {e}")))?);
+        }
+        Ok((grasps, convention))
+    }
+}
+
+/// The rows of a text with their line numbers.
+///
+/// Columns are separated by semicolons if a line has any, else by commas, else by blanks; beside
+/// semicolons a comma is a decimal comma. `#` begins a comment, and a first line without any number
+/// is a header.
+fn rows_of_text(path: &Path, bytes: &[u8]) -> Result<Vec<(usize, Vec<f64>)>, Failure> {
+    let binary = |b: &u8| b.is_ascii_control() && !b.is_ascii_whitespace();
+    if bytes.iter().any(binary) {
+        return Err(Failure::input(
+            path,
+            "not a file of grasps; expected a grasps.json, or rows of numbers as .npy or as text (.csv)",
+        ));
+    }
+    let text = String::from_utf8_lossy(bytes);
+    let mut rows: Vec<(usize, Vec<f64>)> = Vec::new();
+    let mut header = false;
+    for (index, line) in text.split('\n').enumerate() {
+        let line = line.split('#').next().unwrap_or_default().trim();
+        if line.is_empty() {
+            continue;
+        }
+        let cells = cells(line);
+        let numbers: Vec<Option<f64>> = cells.iter().map(|cell| number(cell)).collect();
+        if rows.is_empty() && !header && numbers.iter().all(Option::is_none) {
+            header = true;
+            continue;
+        }
+        let place = format!("line {}", index + 1);
+        if let Some(column) = numbers.iter().position(Option::is_none) {
+            let cell = cells[column];
+            let why = format!("{place}, column {column} is `{cell}`; expected a number");
+            return Err(Failure::input(path, why));
+        }
+        contacts_in(path, &place, cells.len())?;
+        rows.push((index + 1, numbers.into_iter().flatten().collect()));
+    }
+    Ok(rows)
+}
+
+fn cells(line: &str) -> Vec<&str> {
+    match [';', ','].into_iter().find(|c| line.contains(*c)) {
+        Some(separator) => {
+            let line = line.strip_suffix(separator).unwrap_or(line);
+            let cells = line.split(separator);
+            cells.map(|c| c.trim().trim_matches(['"', '\''])).collect()
+        }
+        None => line.split_whitespace().collect(),
+    }
+}
+
+/// A number, perhaps with a decimal comma: where commas separate, no cell has one.
+fn number(cell: &str) -> Option<f64> {
+    cell.parse()
+        .ok()
+        .or_else(|| cell.replacen(',', ".", 1).parse().ok())
 }

@@ -1,8 +1,9 @@
 //! Running the program, and what it says; no test file needs all of it.
 #![allow(dead_code)]
 
+use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 /// Runs the program in a folder.
 pub(crate) fn moduli(folder: &Path, arguments: &[&str]) -> Output {
@@ -11,6 +12,22 @@ pub(crate) fn moduli(folder: &Path, arguments: &[&str]) -> Output {
         .args(arguments)
         .output()
         .expect("the program starts")
+}
+
+/// Runs the program with bytes on its standard input.
+pub(crate) fn moduli_fed(folder: &Path, arguments: &[&str], input: &[u8]) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_moduli"))
+        .current_dir(folder)
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut pipe = child.stdin.take().expect("its input is a pipe");
+    pipe.write_all(input).expect("it reads its input");
+    drop(pipe);
+    child.wait_with_output().expect("it ends")
 }
 
 /// What it said; it must have succeeded.
