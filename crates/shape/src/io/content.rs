@@ -173,9 +173,7 @@ fn likely(text: &str) -> Content {
     };
     let body = lines.get(1..lines.len().saturating_sub(1));
     match body {
-        Some(body) if !body.is_empty() && body.iter().all(numbers) => {
-            Content::Likely(Format::Xyz)
-        }
+        Some(body) if !body.is_empty() && body.iter().all(numbers) => Content::Likely(Format::Xyz),
         _ => Content::Unknown,
     }
 }

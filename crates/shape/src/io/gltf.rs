@@ -18,15 +18,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raw, LoadError> {
     let document = Document::read(bytes)?;
     let json = &document.json;
     let scene = index(json, "scene").unwrap_or(0);
-    let roots = json["scenes"][scene]["nodes"].as_array();
-    let mut open: Vec<(usize, Matrix4<f64>, usize)> = match roots {
-        Some(roots) => indices(roots)
-            .map(|n| (n, Matrix4::identity(), 0))
-            .collect(),
-        None => nodes_without_parent(json)
-            .map(|n| (n, Matrix4::identity(), 0))
-            .collect(),
+    let roots = &json["scenes"][scene]["nodes"];
+    let roots: Vec<usize> = match roots.is_array() {
+        true => indices(roots).collect(),
+        false => nodes_without_parent(json).collect(),
     };
+    let start = |node: usize| (node, Matrix4::identity(), 0);
+    let mut open: Vec<(usize, Matrix4<f64>, usize)> = roots.into_iter().map(start).collect();
     let mut raw = Raw::default();
     let mut visited = 0;
     // A mesh may be used by many nodes, but not to fill the memory.
@@ -50,30 +48,21 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raw, LoadError> {
                 }
             }
         }
-        let children = facts["children"].as_array();
-        open.extend(
-            children
-                .into_iter()
-                .flat_map(indices)
-                .map(|n| (n, here, depth + 1)),
-        );
+        open.extend(indices(&facts["children"]).map(|n| (n, here, depth + 1)));
     }
     Ok(raw)
 }
 
-fn indices(list: &[Value]) -> impl Iterator<Item = usize> {
-    list.iter()
-        .filter_map(|v| usize::try_from(v.as_u64()?).ok())
+/// The whole numbers of a list.
+fn indices(list: &Value) -> impl Iterator<Item = usize> {
+    let list = list.as_array().into_iter().flatten();
+    list.filter_map(|v| usize::try_from(v.as_u64()?).ok())
 }
 
 fn nodes_without_parent(json: &Value) -> impl Iterator<Item = usize> {
     let nodes = json["nodes"].as_array().map_or(&[][..], Vec::as_slice);
     let mut is_child = vec![false; nodes.len()];
-    for child in nodes
-        .iter()
-        .filter_map(|n| n["children"].as_array())
-        .flat_map(indices)
-    {
+    for child in nodes.iter().flat_map(|n| indices(&n["children"])) {
         if let Some(entry) = is_child.get_mut(child) {
             *entry = true;
         }

@@ -4,6 +4,7 @@ mod common;
 mod formats;
 mod loading;
 mod mutations;
+mod octahedron;
 mod open_containers;
 mod outliers;
 mod properties;

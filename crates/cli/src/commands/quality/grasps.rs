@@ -38,7 +38,7 @@ pub(super) fn read_grasps(path: &Path, asked: Option<&Convention>) -> Result<Gra
         let table = Table::from_npy_flattened(&bytes).map_err(|e| Failure::input(path, e))?;
         contacts_in(path, "the table", table.columns())?;
         let rows = table.rows().enumerate();
-        rows.map(|(row, cells)| reader.from_row(&format!("row {row}"), cells))
+        rows.map(|(row, cells)| reader.grasp_of_row(&format!("row {row}"), cells))
             .collect::<Result<_, _>>()?
     } else if named_json || start.trim_ascii_start().starts_with(b"{") {
         let (grasps, convention) = reader.read_json(start, asked)?;
@@ -47,7 +47,7 @@ pub(super) fn read_grasps(path: &Path, asked: Option<&Convention>) -> Result<Gra
     } else {
         let rows = rows_of_text(path, start)?;
         let grasp =
-            |(line, cells): &(usize, Vec<f64>)| reader.from_row(&format!("line {line}"), cells);
+            |(line, cells): &(usize, Vec<f64>)| reader.grasp_of_row(&format!("line {line}"), cells);
         rows.iter().map(grasp).collect::<Result<_, _>>()?
     };
     if grasps.is_empty() {
@@ -100,7 +100,7 @@ impl Reader<'_> {
     }
 
     /// A grasp from a row of numbers; `place` names it in errors.
-    fn from_row(&mut self, place: &str, cells: &[f64]) -> Result<Grasp, Failure> {
+    fn grasp_of_row(&mut self, place: &str, cells: &[f64]) -> Result<Grasp, Failure> {
         if let Some(column) = cells.iter().position(|v| !v.is_finite()) {
             let value = cells[column];
             let why = format!("{place}, column {column} is {value}; expected a finite number");
