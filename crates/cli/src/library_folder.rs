@@ -41,7 +41,8 @@ pub(crate) fn read(folder: &Path) -> Result<LibraryFolder, Failure> {
         }
     }
     files.sort();
-    let read: Vec<Result<LibraryObjectRecord, String>> = files.par_iter().map(|file| object(file)).collect();
+    let read: Vec<Result<LibraryObjectRecord, String>> =
+        files.par_iter().map(|file| object(file)).collect();
     let (mut objects, mut warnings) = (Vec::new(), Vec::new());
     for (file, object) in files.iter().zip(read) {
         match object {

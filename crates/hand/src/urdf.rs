@@ -1,8 +1,8 @@
-//! A [`HandModel`] from a URDF text.
+//! A [`HandModel`] from a URDF text; the only user of urdf-rs.
 //!
-//! Read is what a hand needs: the tree of links, collision geometry, axes, limits and mimics. Masses,
-//! efforts, visuals and the elements of simulators are passed over. Everything that is read is checked
-//! and refused by name.
+//! A hand needs the tree of links, collision geometry, axes, limits and mimics. Masses, efforts, visuals
+//! and the elements of simulators are left out before urdf-rs reads the text. Everything that is read is
+//! checked and refused by name.
 
 mod document;
 mod encoding;
@@ -14,7 +14,6 @@ use thiserror::Error;
 
 use crate::mesh_file::{MeshFileError, mesh_vertices};
 use crate::model::{Geometry, HandModel, LinkGeometry};
-use document::{LinkText, Origin, Piece, Robot, Shape};
 pub use encoding::urdf_text;
 pub(crate) use tree::UNLIMITED;
 pub use xml::{MAX_URDF_BYTES, MAX_URDF_DEPTH, MAX_URDF_ELEMENTS};
@@ -61,7 +60,7 @@ pub enum UrdfError {
         /// Where.
         byte: usize,
         /// What is wrong.
-        what: &'static str,
+        what: String,
     },
     /// An entry that is no number.
     #[error("'{word}' in the {what} at byte {byte} is no number")]
@@ -73,15 +72,17 @@ pub enum UrdfError {
         /// The entry, its first 40 characters.
         word: String,
     },
-    /// A vector that has not three entries.
-    #[error("the {what} at byte {byte} has {count} numbers, not three")]
-    NotThree {
+    /// An attribute with another number of entries than it should have.
+    #[error("the {what} at byte {byte} has {count} numbers, expected {expected}")]
+    Count {
         /// Where the element stands that holds it.
         byte: usize,
         /// Its attribute.
         what: &'static str,
         /// How many numbers it has.
         count: usize,
+        /// How many it should have.
+        expected: usize,
     },
     /// A document type (and so possibly entities) is declared.
     #[error("a document type or entity is declared at byte {byte}; URDFs need none")]
@@ -97,6 +98,9 @@ pub enum UrdfError {
         /// What to do.
         advice: &'static str,
     },
+    /// urdf-rs refuses what this crate has checked.
+    #[error("not a URDF: {0}")]
+    Parse(String),
     /// The root element is not that of a URDF.
     #[error("not a URDF: the root element is <{found}>, expected <robot>")]
     Root {
@@ -277,7 +281,7 @@ fn mesh_error(link: &str, file: &str, reason: String) -> UrdfError {
     }
 }
 
-fn check_counts(robot: &Robot) -> Result<(), UrdfError> {
+fn check_counts(robot: &urdf_rs::Robot) -> Result<(), UrdfError> {
     if robot.links.is_empty() {
         return Err(UrdfError::NoLinks);
     }
@@ -293,7 +297,7 @@ fn check_counts(robot: &Robot) -> Result<(), UrdfError> {
 }
 
 fn link_geometry(
-    link: &LinkText,
+    link: &urdf_rs::Link,
     resolve: &MeshResolver<'_>,
 ) -> Result<Vec<LinkGeometry>, UrdfError> {
     if link.collision.len() > MAX_PIECES {
@@ -308,35 +312,42 @@ fn link_geometry(
         .map(|piece| {
             Ok(LinkGeometry {
                 link_from_geometry: isometry(&link.name, &piece.origin)?,
-                geometry: geometry(&link.name, piece, resolve)?,
+                geometry: geometry(&link.name, &piece.geometry, resolve)?,
             })
         })
         .collect()
 }
 
-fn geometry(link: &str, piece: &Piece, resolve: &MeshResolver<'_>) -> Result<Geometry, UrdfError> {
+fn geometry(
+    link: &str,
+    piece: &urdf_rs::Geometry,
+    resolve: &MeshResolver<'_>,
+) -> Result<Geometry, UrdfError> {
     let half = |what, length: f64| Ok(positive(link, what, length)? / 2.0);
-    Ok(match &piece.shape {
-        Shape::Box { size } => Geometry::Box {
+    Ok(match piece {
+        urdf_rs::Geometry::Box { size } => Geometry::Box {
             half_extents: Vector3::new(
                 half("box size", size[0])?,
                 half("box size", size[1])?,
                 half("box size", size[2])?,
             ),
         },
-        Shape::Cylinder { radius, length } => Geometry::Cylinder {
+        urdf_rs::Geometry::Cylinder { radius, length } => Geometry::Cylinder {
             radius: positive(link, "cylinder radius", *radius)?,
             half_length: half("cylinder length", *length)?,
         },
-        Shape::Capsule { radius, length } => Geometry::Capsule {
+        urdf_rs::Geometry::Capsule { radius, length } => Geometry::Capsule {
             radius: positive(link, "capsule radius", *radius)?,
             half_length: half("capsule length", *length)?,
         },
-        Shape::Sphere { radius } => Geometry::Sphere {
+        urdf_rs::Geometry::Sphere { radius } => Geometry::Sphere {
             radius: positive(link, "sphere radius", *radius)?,
         },
-        Shape::Mesh { file, scale } => {
-            let scale = vector(link, "mesh scale", scale)?;
+        urdf_rs::Geometry::Mesh {
+            filename: file,
+            scale,
+        } => {
+            let scale = vector(link, "mesh scale", &scale.map_or([1.0; 3], |s| s.0))?;
             let points: Vec<_> = resolve(link, file)?
                 .iter()
                 .map(|p| Point3::from(p.coords.component_mul(&scale)))
@@ -378,12 +389,12 @@ fn vector(item: &str, what: &'static str, v: &[f64; 3]) -> Result<Vector3<f64>, 
 }
 
 /// Pose from `xyz` and `rpy` (fixed axes: roll about x, then pitch about y, then yaw about z).
-fn isometry(item: &str, origin: &Origin) -> Result<Isometry3<f64>, UrdfError> {
-    let xyz = vector(item, "origin xyz", &origin.xyz)?;
+fn isometry(item: &str, origin: &urdf_rs::Pose) -> Result<Isometry3<f64>, UrdfError> {
+    let xyz = vector(item, "origin xyz", &origin.xyz.0)?;
     for &value in xyz.iter() {
         checked(item, "origin xyz", value, value.abs() <= MAX_LENGTH_M)?;
     }
-    let rpy = vector(item, "origin rpy", &origin.rpy)?;
+    let rpy = vector(item, "origin rpy", &origin.rpy.0)?;
     Ok(Isometry3::from_parts(
         Translation3::from(xyz),
         UnitQuaternion::from_euler_angles(rpy.x, rpy.y, rpy.z),

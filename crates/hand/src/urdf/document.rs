@@ -1,65 +1,16 @@
-//! What a URDF says of links and joints: exactly what a hand needs, nothing else is looked at.
+//! What a URDF says of links and joints, in the form that urdf-rs reads.
+//!
+//! urdf-rs asks for elements that a hand does not need, such as the velocity of a limit, and stops at
+//! files that other readers accept. So the text is written again with exactly what a hand needs, each
+//! entry checked and named where it is wrong, and urdf-rs reads that.
+
+use std::fmt::Write;
 
 use super::UrdfError;
 use super::xml::{self, Element};
 
-/// A robot in the order of its file.
-pub(super) struct Robot {
-    pub(super) name: String,
-    pub(super) links: Vec<LinkText>,
-    pub(super) joints: Vec<JointText>,
-}
-
-/// A link with its collision geometry.
-pub(super) struct LinkText {
-    pub(super) name: String,
-    pub(super) collision: Vec<Piece>,
-}
-
-/// One piece of collision geometry.
-pub(super) struct Piece {
-    pub(super) origin: Origin,
-    pub(super) shape: Shape,
-}
-
-/// The forms of collision geometry, sizes as the URDF gives them.
-pub(super) enum Shape {
-    Box { size: [f64; 3] },
-    Cylinder { radius: f64, length: f64 },
-    Capsule { radius: f64, length: f64 },
-    Sphere { radius: f64 },
-    Mesh { file: String, scale: [f64; 3] },
-}
-
-/// A pose by `xyz` and `rpy`.
-#[derive(Default)]
-pub(super) struct Origin {
-    pub(super) xyz: [f64; 3],
-    pub(super) rpy: [f64; 3],
-}
-
-/// A joint.
-pub(super) struct JointText {
-    pub(super) name: String,
-    pub(super) kind: String,
-    pub(super) parent: String,
-    pub(super) child: String,
-    pub(super) origin: Origin,
-    pub(super) axis: [f64; 3],
-    /// Lower and upper, where one of them is given.
-    pub(super) limit: Option<(f64, f64)>,
-    pub(super) mimic: Option<MimicText>,
-}
-
-/// The joint that a joint follows.
-pub(super) struct MimicText {
-    pub(super) joint: String,
-    pub(super) multiplier: f64,
-    pub(super) offset: f64,
-}
-
 /// Reads the elements of a URDF; text that is something else is named as what it is.
-pub(super) fn read(text: &str) -> Result<Robot, UrdfError> {
+pub(super) fn read(text: &str) -> Result<urdf_rs::Robot, UrdfError> {
     if text.starts_with("version https://git-lfs") {
         return Err(UrdfError::Foreign {
             found: "a pointer of Git LFS and not the file itself",
@@ -69,17 +20,23 @@ pub(super) fn read(text: &str) -> Result<Robot, UrdfError> {
     let root = xml::root(text)?;
     check_root(&root)?;
     check_expanded(&root)?;
-    let links = root.children_named("link").map(link);
-    let joints = root.children_named("joint").map(joint);
-    Ok(Robot {
-        name: root.attribute("name").unwrap_or_default().to_owned(),
-        links: links.collect::<Result<_, _>>()?,
-        joints: joints.collect::<Result<_, _>>()?,
-    })
+    let mut clean = Clean::default();
+    clean.open(
+        "robot",
+        &[("name", root.attribute("name").unwrap_or_default())],
+    );
+    for element in root.children_named("link") {
+        clean.link(element)?;
+    }
+    for element in root.children_named("joint") {
+        clean.joint(element)?;
+    }
+    clean.close("robot");
+    urdf_rs::read_from_string(&clean.text).map_err(|e| UrdfError::Parse(e.to_string()))
 }
 
 /// The root element tells what a file is.
-fn check_root(root: &Element<'_>) -> Result<(), UrdfError> {
+fn check_root(root: &Element) -> Result<(), UrdfError> {
     let (found, advice) = match root.name.to_lowercase().as_str() {
         "robot" => return Ok(()),
         "mujoco" | "mujocoinclude" => (
@@ -116,19 +73,17 @@ fn unexpanded() -> UrdfError {
 }
 
 /// Expanded files may still declare the xacro namespace; they hold no element or expression of it.
-fn check_expanded(root: &Element<'_>) -> Result<(), UrdfError> {
-    let expression = |e: &Element<'_>| {
-        let values = e.attributes.iter().map(|(_, value)| value);
-        values
-            .into_iter()
-            .any(|v| v.contains("${") || v.contains("$("))
+fn check_expanded(root: &Element) -> Result<(), UrdfError> {
+    let expression = |e: &Element| {
+        let mut values = e.attributes.iter().map(|(_, value)| value);
+        values.any(|v| v.contains("${") || v.contains("$("))
     };
-    fn any(e: &Element<'_>, test: &dyn Fn(&Element<'_>) -> bool) -> bool {
+    fn any(e: &Element, test: &dyn Fn(&Element) -> bool) -> bool {
         test(e) || e.children.iter().any(|c| any(c, test))
     }
-    let macros = |e: &Element<'_>| e.name.starts_with("xacro:");
+    let macros = |e: &Element| e.name.starts_with("xacro:");
     // Elements of simulators may hold such expressions of their own.
-    let ours = |e: &&Element<'_>| ["link", "joint"].contains(&e.name);
+    let ours = |e: &&Element| ["link", "joint"].contains(&e.name.as_str());
     if root.children.iter().any(macros)
         || root
             .children
@@ -141,123 +96,193 @@ fn check_expanded(root: &Element<'_>) -> Result<(), UrdfError> {
     Ok(())
 }
 
-fn link(element: &Element<'_>) -> Result<LinkText, UrdfError> {
-    let name = named(element)?;
-    let pieces = element.children_named("collision");
-    Ok(LinkText {
-        collision: pieces
-            .map(|collision| {
-                Ok(Piece {
-                    origin: origin(collision)?,
-                    shape: shape(&name, collision)?,
-                })
-            })
-            .collect::<Result<_, _>>()?,
-        name,
-    })
+/// The text for urdf-rs.
+#[derive(Default)]
+struct Clean {
+    text: String,
 }
 
-fn shape(link: &str, collision: &Element<'_>) -> Result<Shape, UrdfError> {
-    let geometry = collision
-        .child("geometry")
-        .and_then(|g| g.children.first())
-        .ok_or_else(|| UrdfError::EmptyGeometry { link: link.into() })?;
-    let item = || format!("a {} of link '{link}'", geometry.name);
-    let length = |what: &'static str| {
-        let found = number(geometry, what)?;
-        found.ok_or_else(|| missing(item(), what))
-    };
-    let plain = geometry.name.rsplit(':').next().unwrap_or_default();
-    Ok(match plain {
-        "box" => Shape::Box {
-            size: vector(geometry, "size")?.ok_or_else(|| missing(item(), "size"))?,
-        },
-        "cylinder" => Shape::Cylinder {
-            radius: length("radius")?,
-            length: length("length")?,
-        },
-        "capsule" => Shape::Capsule {
-            radius: length("radius")?,
-            length: length("length")?,
-        },
-        "sphere" => Shape::Sphere {
-            radius: length("radius")?,
-        },
-        "mesh" => Shape::Mesh {
-            file: geometry
-                .value("filename")
-                .ok_or_else(|| missing(item(), "filename"))?
-                .to_owned(),
-            scale: vector(geometry, "scale")?.unwrap_or([1.0; 3]),
-        },
-        _ => {
-            return Err(UrdfError::GeometryKind {
-                link: link.to_owned(),
-                kind: geometry.name.chars().take(40).collect(),
+impl Clean {
+    fn tag(&mut self, name: &str, attributes: &[(&str, &str)], end: &str) {
+        self.text.push('<');
+        self.text.push_str(name);
+        for (key, value) in attributes {
+            self.text.push(' ');
+            self.text.push_str(key);
+            self.text.push_str("=\"");
+            for sign in value.chars() {
+                match sign {
+                    '&' => self.text.push_str("&amp;"),
+                    '<' => self.text.push_str("&lt;"),
+                    '>' => self.text.push_str("&gt;"),
+                    '"' => self.text.push_str("&quot;"),
+                    sign => self.text.push(sign),
+                }
+            }
+            self.text.push('"');
+        }
+        self.text.push_str(end);
+    }
+
+    fn open(&mut self, name: &str, attributes: &[(&str, &str)]) {
+        self.tag(name, attributes, ">");
+    }
+
+    fn empty(&mut self, name: &str, attributes: &[(&str, &str)]) {
+        self.tag(name, attributes, "/>");
+    }
+
+    fn close(&mut self, name: &str) {
+        self.text.push_str("</");
+        self.text.push_str(name);
+        self.text.push('>');
+    }
+
+    fn link(&mut self, element: &Element) -> Result<(), UrdfError> {
+        let name = named(element)?;
+        self.open("link", &[("name", name)]);
+        for collision in element.children_named("collision") {
+            self.open("collision", &[]);
+            self.origin(collision)?;
+            self.open("geometry", &[]);
+            self.shape(name, collision)?;
+            self.close("geometry");
+            self.close("collision");
+        }
+        self.close("link");
+        Ok(())
+    }
+
+    fn shape(&mut self, link: &str, collision: &Element) -> Result<(), UrdfError> {
+        let geometry = collision
+            .child("geometry")
+            .and_then(|g| g.children.first())
+            .ok_or_else(|| UrdfError::EmptyGeometry { link: link.into() })?;
+        let plain = geometry.name.rsplit(':').next().unwrap_or_default();
+        // What each form must have, and how many numbers that is.
+        let needed: &[(&'static str, usize)] = match plain {
+            "box" => &[("size", 3)],
+            "cylinder" | "capsule" => &[("radius", 1), ("length", 1)],
+            "sphere" => &[("radius", 1)],
+            "mesh" => &[],
+            _ => {
+                return Err(UrdfError::GeometryKind {
+                    link: link.to_owned(),
+                    kind: geometry.name.chars().take(40).collect(),
+                });
+            }
+        };
+        let item = || format!("a {} of link '{link}'", geometry.name);
+        let mut attributes = Vec::new();
+        for &(what, count) in needed {
+            let found = numbers(geometry, what, count)?;
+            attributes.push((what, found.ok_or_else(|| missing(item(), what))?));
+        }
+        if plain == "mesh" {
+            let file = geometry.value("filename");
+            let file = file.ok_or_else(|| missing(item(), "filename"))?;
+            attributes.push(("filename", file.to_owned()));
+            let scale = numbers(geometry, "scale", 3)?;
+            attributes.extend(scale.map(|scale| ("scale", scale)));
+        }
+        self.empty(plain, &borrowed(&attributes));
+        Ok(())
+    }
+
+    fn joint(&mut self, element: &Element) -> Result<(), UrdfError> {
+        let name = named(element)?;
+        let of_joint = |what| missing(format!("joint '{name}'"), what);
+        let kind = element.attribute("type").ok_or_else(|| of_joint("type"))?;
+        if !["fixed", "revolute", "continuous", "prismatic"].contains(&kind) {
+            return Err(UrdfError::JointKind {
+                joint: name.to_owned(),
+                kind: kind.chars().take(40).collect(),
             });
         }
-    })
-}
-
-fn joint(element: &Element<'_>) -> Result<JointText, UrdfError> {
-    let name = named(element)?;
-    let of_joint = |what| missing(format!("joint '{name}'"), what);
-    let linked = |what: &'static str| {
-        let link = element.child(what).and_then(|e| e.attribute("link"));
-        link.map(str::to_owned).ok_or_else(|| of_joint(what))
-    };
-    let axis = element
-        .child("axis")
-        .map(|a| vector(a, "xyz"))
-        .transpose()?;
-    let limit = element.child("limit").map(limit).transpose()?;
-    let mimic = element.child("mimic").map(|m| {
-        let followed = m.attribute("joint");
-        Ok(MimicText {
-            joint: followed
-                .ok_or_else(|| of_joint("joint to mimic"))?
-                .to_owned(),
-            multiplier: number(m, "multiplier")?.unwrap_or(1.0),
-            offset: number(m, "offset")?.unwrap_or(0.0),
-        })
-    });
-    Ok(JointText {
-        kind: element
-            .attribute("type")
-            .ok_or_else(|| of_joint("type"))?
-            .to_owned(),
-        parent: linked("parent")?,
-        child: linked("child")?,
-        origin: origin(element)?,
-        axis: axis.flatten().unwrap_or([1.0, 0.0, 0.0]),
-        limit: limit.flatten(),
-        mimic: mimic.transpose()?,
-        name,
-    })
-}
-
-/// Effort and velocity play no part; a bound that is left out is 0, as the format says.
-fn limit(element: &Element<'_>) -> Result<Option<(f64, f64)>, UrdfError> {
-    let (lower, upper) = (number(element, "lower")?, number(element, "upper")?);
-    if lower.is_none() && upper.is_none() {
-        return Ok(None);
+        self.open("joint", &[("name", name), ("type", kind)]);
+        self.origin(element)?;
+        for what in ["parent", "child"] {
+            let link = element.child(what).and_then(|e| e.attribute("link"));
+            self.empty(what, &[("link", link.ok_or_else(|| of_joint(what))?)]);
+        }
+        if let Some(axis) = element.child("axis") {
+            let axis = numbers(axis, "xyz", 3)?.map(|xyz| ("xyz", xyz));
+            self.empty("axis", &borrowed(axis.as_slice()));
+        }
+        self.limit(name, kind, element)?;
+        if let Some(mimic) = element.child("mimic") {
+            let followed = mimic.attribute("joint");
+            let followed = followed.ok_or_else(|| of_joint("joint to mimic"))?;
+            let mut attributes = vec![("joint", followed.to_owned())];
+            for what in ["multiplier", "offset"] {
+                attributes.extend(numbers(mimic, what, 1)?.map(|value| (what, value)));
+            }
+            self.empty("mimic", &borrowed(&attributes));
+        }
+        self.close("joint");
+        Ok(())
     }
-    Ok(Some((lower.unwrap_or(0.0), upper.unwrap_or(0.0))))
+
+    /// Effort and velocity play no part; a bound that is left out is 0, as the format says. A joint that
+    /// follows another moves as that one does and needs no limits.
+    fn limit(&mut self, joint: &str, kind: &str, element: &Element) -> Result<(), UrdfError> {
+        let bounds = match element.child("limit") {
+            Some(limit) => [numbers(limit, "lower", 1)?, numbers(limit, "upper", 1)?],
+            None => [None, None],
+        };
+        let [lower, upper] = match bounds {
+            [None, None] if element.child("mimic").is_some() => ["-inf", "inf"].map(str::to_owned),
+            [None, None] if ["revolute", "prismatic"].contains(&kind) => {
+                return Err(no_limit(joint, kind));
+            }
+            bounds => bounds.map(|bound| bound.unwrap_or_else(|| "0".to_owned())),
+        };
+        let zero = "0";
+        self.empty(
+            "limit",
+            &[
+                ("lower", &lower),
+                ("upper", &upper),
+                ("effort", zero),
+                ("velocity", zero),
+            ],
+        );
+        Ok(())
+    }
+
+    fn origin(&mut self, element: &Element) -> Result<(), UrdfError> {
+        let Some(origin) = element.child("origin") else {
+            return Ok(());
+        };
+        let mut attributes = Vec::new();
+        for what in ["xyz", "rpy"] {
+            attributes.extend(numbers(origin, what, 3)?.map(|value| (what, value)));
+        }
+        self.empty("origin", &borrowed(&attributes));
+        Ok(())
+    }
 }
 
-fn origin(element: &Element<'_>) -> Result<Origin, UrdfError> {
-    let Some(origin) = element.child("origin") else {
-        return Ok(Origin::default());
+fn borrowed<'a>(attributes: &'a [(&'a str, String)]) -> Vec<(&'a str, &'a str)> {
+    let pairs = attributes.iter();
+    pairs.map(|(key, value)| (*key, value.as_str())).collect()
+}
+
+fn no_limit(joint: &str, kind: &str) -> UrdfError {
+    let (unit, otherwise) = match kind {
+        "prismatic" => ("metres", ""),
+        _ => ("radians", ", or make its type continuous"),
     };
-    Ok(Origin {
-        xyz: vector(origin, "xyz")?.unwrap_or_default(),
-        rpy: vector(origin, "rpy")?.unwrap_or_default(),
-    })
+    UrdfError::NoLimit {
+        joint: joint.to_owned(),
+        kind: kind.to_owned(),
+        unit,
+        otherwise,
+    }
 }
 
-fn named(element: &Element<'_>) -> Result<String, UrdfError> {
-    let name = element.attribute("name").map(str::to_owned);
-    name.ok_or_else(|| {
+fn named(element: &Element) -> Result<&str, UrdfError> {
+    element.attribute("name").ok_or_else(|| {
         missing(
             format!("a {} at byte {}", element.name, element.byte),
             "name",
@@ -269,32 +294,35 @@ fn missing(item: String, what: &'static str) -> UrdfError {
     UrdfError::Missing { item, what }
 }
 
-fn number(element: &Element<'_>, what: &'static str) -> Result<Option<f64>, UrdfError> {
-    let value = element.value(what).map(str::trim);
-    value.map(|word| parsed(element, what, word)).transpose()
-}
-
-fn vector(element: &Element<'_>, what: &'static str) -> Result<Option<[f64; 3]>, UrdfError> {
+/// So many numbers in an attribute, written again; `None` where it is absent.
+fn numbers(
+    element: &Element,
+    what: &'static str,
+    expected: usize,
+) -> Result<Option<String>, UrdfError> {
     let Some(text) = element.value(what) else {
         return Ok(None);
     };
-    let mut values = Vec::with_capacity(3);
+    let mut clean = String::new();
+    let mut count = 0;
     for word in text.split_whitespace() {
-        values.push(parsed(element, what, word)?);
+        let value: f64 = word.parse().map_err(|_| UrdfError::NotANumber {
+            byte: element.byte,
+            what,
+            word: word.chars().take(40).collect(),
+        })?;
+        let gap = if count > 0 { " " } else { "" };
+        // Writing to a string does not fail.
+        let _ = write!(clean, "{gap}{value:?}");
+        count += 1;
     }
-    let count = values.len();
-    let three = <[f64; 3]>::try_from(values).map_err(|_| UrdfError::NotThree {
-        byte: element.byte,
-        what,
-        count,
-    })?;
-    Ok(Some(three))
-}
-
-fn parsed(element: &Element<'_>, what: &'static str, word: &str) -> Result<f64, UrdfError> {
-    word.parse().map_err(|_| UrdfError::NotANumber {
-        byte: element.byte,
-        what,
-        word: word.chars().take(40).collect(),
-    })
+    if count != expected {
+        return Err(UrdfError::Count {
+            byte: element.byte,
+            what,
+            count,
+            expected,
+        });
+    }
+    Ok(Some(clean))
 }

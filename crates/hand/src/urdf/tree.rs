@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use nalgebra::{UnitVector3, Vector3};
+use urdf_rs::JointType;
 
-use super::document::{JointText, Robot};
 use super::{UrdfError, isometry, number, vector};
 use crate::model::{Drive, HandModel, Joint, JointKind, Link, LinkGeometry};
 
@@ -19,7 +19,7 @@ const NO_BOUND: f64 = 1e3;
 
 /// Builds the model from a URDF and the geometry of its links (in the file's order).
 pub(super) fn build(
-    robot: &Robot,
+    robot: &urdf_rs::Robot,
     geometry: Vec<Vec<LinkGeometry>>,
 ) -> Result<HandModel, UrdfError> {
     let link_of = unique_links(robot)?;
@@ -36,7 +36,12 @@ pub(super) fn build(
         .zip(&drives)
         .map(|(joint, &drive)| {
             let place = |name: &str| new_of[link_of[name]];
-            moving_joint(joint, place(&joint.parent), place(&joint.child), drive)
+            moving_joint(
+                joint,
+                place(&joint.parent.link),
+                place(&joint.child.link),
+                drive,
+            )
         })
         .collect::<Result<Vec<_>, _>>()?;
     let mut geometry: Vec<_> = geometry.into_iter().map(Some).collect();
@@ -59,7 +64,7 @@ pub(super) fn build(
     })
 }
 
-fn unique_links(robot: &Robot) -> Result<HashMap<&str, usize>, UrdfError> {
+fn unique_links(robot: &urdf_rs::Robot) -> Result<HashMap<&str, usize>, UrdfError> {
     let mut link_of = HashMap::new();
     for (index, link) in robot.links.iter().enumerate() {
         if link_of.insert(link.name.as_str(), index).is_some() {
@@ -70,10 +75,13 @@ fn unique_links(robot: &Robot) -> Result<HashMap<&str, usize>, UrdfError> {
 }
 
 /// The joint that carries each link.
-fn parents(robot: &Robot, link_of: &HashMap<&str, usize>) -> Result<Vec<Option<usize>>, UrdfError> {
+fn parents(
+    robot: &urdf_rs::Robot,
+    link_of: &HashMap<&str, usize>,
+) -> Result<Vec<Option<usize>>, UrdfError> {
     let mut parent = vec![None; robot.links.len()];
     for (index, joint) in robot.joints.iter().enumerate() {
-        for name in [&joint.parent, &joint.child] {
+        for name in [&joint.parent.link, &joint.child.link] {
             if !link_of.contains_key(name.as_str()) {
                 return Err(UrdfError::UnknownLink {
                     joint: joint.name.clone(),
@@ -81,10 +89,10 @@ fn parents(robot: &Robot, link_of: &HashMap<&str, usize>) -> Result<Vec<Option<u
                 });
             }
         }
-        let child = link_of[joint.child.as_str()];
+        let child = link_of[joint.child.link.as_str()];
         if let Some(first) = parent[child].replace(index) {
             return Err(UrdfError::TwoParents {
-                link: joint.child.clone(),
+                link: joint.child.link.clone(),
                 first: robot.joints[first].name.clone(),
                 second: joint.name.clone(),
             });
@@ -95,14 +103,14 @@ fn parents(robot: &Robot, link_of: &HashMap<&str, usize>) -> Result<Vec<Option<u
 
 /// Links from the root outwards; every link must be reached from one root.
 fn parents_first(
-    robot: &Robot,
+    robot: &urdf_rs::Robot,
     link_of: &HashMap<&str, usize>,
     parent: &[Option<usize>],
 ) -> Result<Vec<usize>, UrdfError> {
     let roots: Vec<usize> = (0..parent.len()).filter(|&l| parent[l].is_none()).collect();
     let mut children = vec![Vec::new(); parent.len()];
     for joint in &robot.joints {
-        children[link_of[joint.parent.as_str()]].push(link_of[joint.child.as_str()]);
+        children[link_of[joint.parent.link.as_str()]].push(link_of[joint.child.link.as_str()]);
     }
     let mut order: Vec<usize> = roots.iter().copied().take(1).collect();
     let mut next = 0;
@@ -125,14 +133,14 @@ fn parents_first(
 }
 
 /// Where each joint's value comes from; mimic chains are followed to a driven joint.
-fn drives(robot: &Robot) -> Result<Vec<Drive>, UrdfError> {
+fn drives(robot: &urdf_rs::Robot) -> Result<Vec<Drive>, UrdfError> {
     let mut index_of = HashMap::new();
     for (index, joint) in robot.joints.iter().enumerate() {
         if index_of.insert(joint.name.as_str(), index).is_some() {
             return Err(UrdfError::DuplicateJoint(joint.name.clone()));
         }
     }
-    let fixed = |j: usize| robot.joints[j].kind == "fixed";
+    let fixed = |j: usize| robot.joints[j].joint_type == JointType::Fixed;
     let mut number_of = vec![None; robot.joints.len()];
     let mut count = 0;
     for (index, joint) in robot.joints.iter().enumerate() {
@@ -155,7 +163,7 @@ fn drives(robot: &Robot) -> Result<Vec<Drive>, UrdfError> {
 }
 
 fn follow_mimic(
-    robot: &Robot,
+    robot: &urdf_rs::Robot,
     index_of: &HashMap<&str, usize>,
     number_of: &[Option<usize>],
     start: usize,
@@ -169,13 +177,17 @@ fn follow_mimic(
             of: mimic.joint.clone(),
             why,
         };
-        let factor = number(&joint.name, "mimic multiplier", mimic.multiplier)?;
-        offset += multiplier * number(&joint.name, "mimic offset", mimic.offset)?;
+        let factor = number(
+            &joint.name,
+            "mimic multiplier",
+            mimic.multiplier.unwrap_or(1.0),
+        )?;
+        offset += multiplier * number(&joint.name, "mimic offset", mimic.offset.unwrap_or(0.0))?;
         multiplier *= factor;
         at = *index_of
             .get(mimic.joint.as_str())
             .ok_or_else(|| wrong("does not exist"))?;
-        if robot.joints[at].kind == "fixed" {
+        if robot.joints[at].joint_type == JointType::Fixed {
             return Err(wrong("is fixed"));
         }
         if let Some(driven) = number_of[at] {
@@ -194,27 +206,27 @@ fn follow_mimic(
 }
 
 fn moving_joint(
-    joint: &JointText,
+    joint: &urdf_rs::Joint,
     parent: usize,
     child: usize,
     drive: Drive,
 ) -> Result<Joint, UrdfError> {
-    let (kind, limits) = match joint.kind.as_str() {
-        "fixed" => (JointKind::Fixed, (0.0, 0.0)),
-        "revolute" => (JointKind::Revolute, limits(joint, JointKind::Revolute)?),
-        "prismatic" => (JointKind::Prismatic, limits(joint, JointKind::Prismatic)?),
-        "continuous" => (JointKind::Revolute, unlimited(JointKind::Revolute)),
-        other => {
+    let (kind, limits) = match joint.joint_type {
+        JointType::Fixed => (JointKind::Fixed, (0.0, 0.0)),
+        JointType::Revolute => (JointKind::Revolute, limits(joint, JointKind::Revolute)?),
+        JointType::Prismatic => (JointKind::Prismatic, limits(joint, JointKind::Prismatic)?),
+        JointType::Continuous => (JointKind::Revolute, unlimited(JointKind::Revolute)),
+        ref other => {
             return Err(UrdfError::JointKind {
                 joint: joint.name.clone(),
-                kind: other.chars().take(40).collect(),
+                kind: format!("{other:?}").to_lowercase(),
             });
         }
     };
     let axis = if kind == JointKind::Fixed {
         Vector3::x_axis()
     } else {
-        let axis = vector(&joint.name, "axis", &joint.axis)?;
+        let axis = vector(&joint.name, "axis", &joint.axis.xyz.0)?;
         UnitVector3::try_new(axis, 1e-9).ok_or_else(|| UrdfError::ZeroAxis(joint.name.clone()))?
     };
     Ok(Joint {
@@ -235,16 +247,9 @@ fn unlimited(kind: JointKind) -> (f64, f64) {
 }
 
 /// Limits as given; bounds that mean none become those of a joint without limits.
-fn limits(joint: &JointText, kind: JointKind) -> Result<(f64, f64), UrdfError> {
+fn limits(joint: &urdf_rs::Joint, kind: JointKind) -> Result<(f64, f64), UrdfError> {
     let far = unlimited(kind);
-    let Some((lower, upper)) = joint.limit else {
-        // A joint that follows another moves as that one does.
-        return if joint.mimic.is_some() {
-            Ok(far)
-        } else {
-            Err(no_limit(joint, kind))
-        };
-    };
+    let (lower, upper) = (joint.limit.lower, joint.limit.upper);
     for (what, value) in [("lower limit", lower), ("upper limit", upper)] {
         if value.is_nan() {
             let item = joint.name.clone();
@@ -260,17 +265,4 @@ fn limits(joint: &JointText, kind: JointKind) -> Result<(f64, f64), UrdfError> {
     }
     let bounded = |value: f64, far: f64| if value.abs() < NO_BOUND { value } else { far };
     Ok((bounded(lower, far.0), bounded(upper, far.1)))
-}
-
-fn no_limit(joint: &JointText, kind: JointKind) -> UrdfError {
-    let (unit, otherwise) = match kind {
-        JointKind::Prismatic => ("metres", ""),
-        _ => ("radians", ", or make its type continuous"),
-    };
-    UrdfError::NoLimit {
-        joint: joint.name.clone(),
-        kind: joint.kind.clone(),
-        unit,
-        otherwise,
-    }
 }

@@ -168,7 +168,7 @@ fn geometry_that_is_none_is_named_with_its_link() {
             "<cylinder radius='1'/>",
             "a cylinder of link 'a' has no length",
         ),
-        ("<box size='1 1'/>", "has 2 numbers, not three"),
+        ("<box size='1 1'/>", "has 2 numbers, expected 3"),
     ] {
         let said = load_urdf(&urdf("revolute", GOOD, "", geometry)).unwrap_err();
         assert!(said.to_string().contains(words), "{said} lacks {words}");

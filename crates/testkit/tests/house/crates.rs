@@ -75,6 +75,7 @@ const ARROWS: &[(&str, &[&str])] = &[
 const DOORS: &[(&str, &str, &str)] = &[
     ("faer", "sph", "regression"),
     ("parry3d_f64", "hand", "collision"),
+    ("urdf_rs", "hand", "urdf"),
     ("bincode", "record", "envelope"),
 ];
 
