@@ -24,7 +24,7 @@ const NO_OBJECT: &str = "expected a cloud or a mesh";
 const DOWNLOAD: &str = "download the file itself, not the page that shows it";
 
 /// Marks at the first byte.
-const MAGIC: [(&[u8], Content); 20] = [
+const MAGIC: [(&[u8], Content); 25] = [
     (b"\x93NUMPY", Content::Known(Format::Npy)),
     (b"PK\x03\x04", Content::Known(Format::Npz)),
     (b"PK\x05\x06", Content::Known(Format::Npz)),
@@ -68,6 +68,17 @@ const MAGIC: [(&[u8], Content); 20] = [
         b"\x1f\x8b",
         Content::Foreign("compressed by gzip", "unpack it first"),
     ),
+    (
+        b"MATLAB 5.0",
+        Content::Foreign("a MATLAB file", CONVERT_CLOUD),
+    ),
+    (b"#ROSBAG", Content::Foreign("a ROS bag", CONVERT_CLOUD)),
+    (
+        b"\x80\x04\x95",
+        Content::Foreign("a Python pickle", CONVERT_CLOUD),
+    ),
+    (b"PAR1", Content::Foreign("a Parquet table", CONVERT_CLOUD)),
+    (b"PXR-USDC", Content::Foreign("a USD scene", CONVERT_MESH)),
     (b"#usda", Content::Foreign("a USD scene", CONVERT_MESH)),
 ];
 

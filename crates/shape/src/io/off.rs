@@ -14,7 +14,13 @@ use super::text::{Line, Lines, Words, number};
 pub(super) fn read(bytes: &[u8]) -> Result<Raw, LoadError> {
     let mut words = Words::new(bytes);
     let head = header(&mut words)?;
-    by_lines(bytes, &head).or_else(|error| by_words(words, &head).ok_or(error)?)
+    by_lines(bytes, &head).or_else(|error| {
+        // The number of edges may stand on a line of its own.
+        let mut later = words.clone();
+        later.next();
+        let read = by_words(words, &head).or_else(|| by_words(later, &head));
+        read.ok_or(error)?
+    })
 }
 
 struct Head {

@@ -115,56 +115,60 @@ fn vertex_element(elements: &[Element]) -> Result<(usize, [usize; 3]), LoadError
     })
 }
 
+/// Names of lists with the corners of a face.
+const CORNERS: [&str; 4] = [
+    "vertex_indices",
+    "vertex_index",
+    "vertex_indexes",
+    "vertex_ids",
+];
+/// Names that mean the same in an element of faces.
+const MORE_CORNERS: [&str; 3] = ["vertices", "vertex", "indices"];
+const FACES: [&str; 6] = [
+    "face",
+    "faces",
+    "polygon",
+    "polygons",
+    "triangle",
+    "triangles",
+];
+const STRIPS: [&str; 4] = ["tristrips", "tristrip", "tri_strips", "strips"];
+/// Elements with vertex numbers that bound no face.
+const NO_FACES: [&str; 5] = ["edge", "edges", "line", "lines", "polyline"];
+
 fn role(element: &Element) -> Result<Role, LoadError> {
-    let known = [
-        "vertex_indices",
-        "vertex_index",
-        "vertex_indexes",
-        "vertices",
-        "vertex",
-        "indices",
-        "vertex_ids",
-    ];
-    let lists = || {
-        element
-            .properties
-            .iter()
-            .enumerate()
-            .filter(|(_, p)| p.list.is_some())
+    let (faces, strips) = (has_name(element, &FACES), has_name(element, &STRIPS));
+    let list = |names: &[&str]| {
+        let named = |p: &Property| names.iter().any(|n| p.name.eq_ignore_ascii_case(n));
+        let mut properties = element.properties.iter();
+        properties.position(|p| p.list.is_some() && named(p))
     };
-    let is_known = |p: &Property| known.iter().any(|k| p.name.eq_ignore_ascii_case(k));
-    let named = lists().find(|(_, p)| is_known(p));
-    let whole = || {
-        let mut whole = lists().filter(|(_, p)| p.scalar.is_whole());
-        whole.next().filter(|_| whole.next().is_none())
+    // The only list of whole numbers is that of the corners, whatever its name.
+    let only = || {
+        let properties = element.properties.iter().enumerate();
+        let mut whole = properties.filter(|(_, p)| p.list.is_some() && p.scalar.is_whole());
+        let found = whole.next().map(|(i, _)| i);
+        found.filter(|_| whole.next().is_none())
     };
-    let list = named.or_else(whole).map(|(i, _)| i);
-    let strips = has_name(element, &["tristrips", "tristrip", "tri_strips", "strips"]);
-    let faces = has_name(
-        element,
-        &[
-            "face",
-            "faces",
-            "polygon",
-            "polygons",
-            "triangle",
-            "triangles",
-        ],
-    );
-    match list {
-        Some(list) if strips => Ok(Role::Strips(list)),
-        Some(list) if faces => Ok(Role::Polygons(list)),
-        None if (strips || faces) && element.count > 0 => {
+    match list(&CORNERS) {
+        Some(corners) if strips => return Ok(Role::Strips(corners)),
+        Some(corners) if !has_name(element, &NO_FACES) => return Ok(Role::Polygons(corners)),
+        _ => {}
+    }
+    if !(faces || strips) {
+        return Ok(Role::Other);
+    }
+    match list(&MORE_CORNERS).or_else(only) {
+        Some(corners) if strips => Ok(Role::Strips(corners)),
+        Some(corners) => Ok(Role::Polygons(corners)),
+        None if element.count == 0 => Ok(Role::Other),
+        None => {
             let names: Vec<&str> = element.properties.iter().map(|p| p.name.as_str()).collect();
             let expected = "a list `vertex_indices` of the corners of each face";
-            Err(LoadError::line(
-                Format::Ply,
-                element.line,
-                expected,
-                &names.join(", "),
-            ))
+            let found = names.join(", ");
+            let line = element.line;
+            Err(LoadError::line(Format::Ply, line, expected, &found))
         }
-        _ => Ok(Role::Other),
     }
 }
 

@@ -110,10 +110,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header, LoadError> {
         let line = String::from_utf8_lossy(&rest[..end.unwrap_or(rest.len())]);
         at += end.map_or(rest.len(), |end| end + 1);
         number += 1;
-        let words: Vec<&str> = line.split_whitespace().collect();
+        let mut words: Vec<&str> = line.split_whitespace().collect();
+        // Keywords are read in any case, names are not.
+        let key = words.first().map(|w| w.to_ascii_lowercase());
+        if let (Some(first), Some(key)) = (words.first_mut(), &key) {
+            *first = key;
+        }
         let refuse = |expected: &str| LoadError::line(Format::Ply, number, expected, line.trim());
         match words[..] {
-            [word] if number == 1 && word.eq_ignore_ascii_case("ply") => {}
+            ["ply"] if number == 1 => {}
             _ if number == 1 => return Err(refuse("`ply`")),
             [] | ["comment" | "obj_info", ..] => {}
             ["format", name, ..] => {

@@ -42,6 +42,12 @@ struct Entry<'a> {
 /// Reads the array of points: by its name, or the only one with three columns or more.
 pub(super) fn read(bytes: &[u8]) -> Result<Raw, LoadError> {
     let entries = entries(bytes)?;
+    if entries.is_empty() {
+        return Err(LoadError::Foreign {
+            kind: "a ZIP archive without arrays of NumPy",
+            advice: "unpack it first",
+        });
+    }
     let named = |name: &&str| {
         let is_it = |e: &&Entry| e.name.eq_ignore_ascii_case(name);
         entries.iter().find(is_it)

@@ -64,6 +64,10 @@ fn headers_of_ply() {
         let body = rows().replace('\n', " 7\n");
         is_cloud(ply(&header, &body).as_bytes(), "ply");
     }
+    let loud = plain
+        .replace("element vertex", "ELEMENT vertex")
+        .replace("property", "Property");
+    is_cloud(loud.as_bytes(), "ply");
     is_cloud(format!("\u{feff}{plain}").as_bytes(), "ply");
     is_cloud(plain.replace('\n', "\r").as_bytes(), "ply");
     is_cloud(plain.replace('\n', "\r\n").as_bytes(), "ply");
@@ -129,8 +133,12 @@ fn faces_of_ply_under_other_names() {
         let header = PLY_MESH.replace("vertex_indices", list);
         is_mesh(ply(&header, &body).as_bytes(), "ply");
     }
-    let header = PLY_MESH.replace("element face", "element polygon");
-    is_mesh(ply(&header, &body).as_bytes(), "ply");
+    for element in ["polygon", "tri"] {
+        let header = PLY_MESH.replace("element face", &format!("element {element}"));
+        is_mesh(ply(&header, &body).as_bytes(), "ply");
+    }
+    let edges = PLY_MESH.replace("element face", "element edge");
+    is_cloud(ply(&edges, &body).as_bytes(), "ply");
     let strips = PLY_MESH.replace("element face 8", "element tristrips 1");
     let strips = strips.replace("list uchar", "list int");
     let run: Vec<String> = FACES
@@ -210,6 +218,7 @@ fn layouts_of_off() {
         plain.replacen("OFF\n", "", 1),
         plain.replacen("6 8 0", "# numbers\n6 8 0 # v f e", 1),
         plain.replacen("6 8 0", "6 8", 1),
+        plain.replacen("6 8 0", "6\n8\n0", 1),
         format!("OFF\n6 8 0\n{}{}", rows(), face_rows().replace('\n', " ")),
         format!("OFF\n6 8 0\n{}", body.replace(' ', "\n")),
         format!(
@@ -435,6 +444,7 @@ fn files_that_are_not_read_have_their_true_names() {
         ("LASF\0\0", "LAS"),
         ("\u{feff}<html>", "web page"),
         ("ISO-10303-21;\n", "STEP"),
+        ("PK\u{5}\u{6}\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", "ZIP"),
     ] {
         for extension in ["stl", "ply", "xyz", "dae", ""] {
             let error = read_cloud(text.as_bytes(), extension).unwrap_err();
