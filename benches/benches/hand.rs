@@ -35,6 +35,7 @@ fn hand_layer(criterion: &mut Criterion) {
         rules: ClosingRules::default(),
         convention: Convention::named("paper").expect("a known convention"),
         centre: Point3::origin(),
+        tips: hand::TipModel::Point,
         least_quality: 0.01,
     };
     let object = CollisionObject::new(&surface).expect("a grid");

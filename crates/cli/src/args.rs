@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 pub(crate) use grasps::{
-    AscendOptions, AscentScheme, ContactOption, LimitOptions, Metric, MoveOptions, QualityOptions,
+    AscendOptions, AscentScheme, LimitOptions, Metric, MoveOptions, QualityOptions,
     TransferOptions, TransferScheme,
 };
 pub(crate) use hands::{

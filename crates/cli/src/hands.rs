@@ -1,4 +1,4 @@
-//! Hands: the built-in one, or a URDF with its TOML.
+//! Hands: a built-in one, or a URDF with its TOML.
 
 pub(crate) mod findings;
 pub(crate) mod page;
@@ -13,13 +13,10 @@ use crate::failure::Failure;
 use crate::input;
 use crate::mesh_folders::MeshFolders;
 
-/// The name of the built-in hand.
-const BUILT_IN: &str = "sdh";
-
 /// The hand that the options name.
 pub(crate) fn load(options: &HandOptions) -> Result<Hand, Failure> {
-    if is_built_in(options)? {
-        return built_in();
+    if let Some(hand) = built_in(options)? {
+        return Ok(hand);
     }
     let urdf = &options.hand;
     let folders = MeshFolders::new(urdf, options.package_root.as_deref())?;
@@ -36,17 +33,20 @@ pub(crate) fn load(options: &HandOptions) -> Result<Hand, Failure> {
     })
 }
 
-/// Whether the options ask for the built-in hand, which brings its own spec.
-pub(crate) fn is_built_in(options: &HandOptions) -> Result<bool, Failure> {
-    if options.hand != Path::new(BUILT_IN) {
-        return check_named(&options.hand).map(|()| false);
-    }
+/// The built-in hand that the options name; it brings its own spec.
+pub(crate) fn built_in(options: &HandOptions) -> Result<Option<Hand>, Failure> {
+    let found = options.hand.to_str().and_then(Hand::built_in);
+    let Some(hand) = found else {
+        return check_named(&options.hand).map(|()| None);
+    };
     if options.spec.is_some() || options.package_root.is_some() {
-        return Err(Failure::usage(
-            "the built-in hand `sdh` has its own TOML and no meshes; give the URDF that yours belong to",
-        ));
+        return Err(Failure::usage(format!(
+            "the built-in hand `{}` has its own TOML and no meshes; give the URDF that yours belong to",
+            options.hand.display()
+        )));
     }
-    Ok(true)
+    let hand = hand.map_err(|e| Failure::other(format!("the built-in hand: {e}")))?;
+    Ok(Some(hand))
 }
 
 /// A bare word that is no file is the name of a hand that does not exist.
@@ -54,16 +54,12 @@ fn check_named(hand: &Path) -> Result<(), Failure> {
     let bare = hand.extension().is_none() && hand.components().count() == 1;
     if bare && !hand.exists() {
         return Err(Failure::usage(format!(
-            "no hand is named `{}`; the names are: {BUILT_IN}; for another hand give the path of its URDF",
-            hand.display()
+            "no hand is named `{}`; the names are {}; for another hand give the path of its URDF",
+            hand.display(),
+            Hand::BUILT_IN.join(", ")
         )));
     }
     Ok(())
-}
-
-/// The hand inside the program.
-pub(crate) fn built_in() -> Result<Hand, Failure> {
-    hand::schunk_sdh().map_err(|e| Failure::other(format!("the built-in hand: {e}")))
 }
 
 /// The TOML given, or the one beside the URDF.

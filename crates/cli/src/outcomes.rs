@@ -1,6 +1,6 @@
 //! What became of hand poses, in words.
 
-use hand::{Geometry, Hand, OutcomeCounts, Rejection};
+use hand::{Geometry, Hand, OutcomeCounts, Rejection, TipModel};
 
 /// "96 of 200 poses give a stable grasp; 60 tip did not arrive, …".
 pub(crate) fn sentence(outcomes: &OutcomeCounts) -> String {
@@ -27,7 +27,7 @@ pub(crate) fn reasons(outcomes: &OutcomeCounts) -> Vec<(&'static str, usize)> {
 }
 
 /// Why no pose gave a stable grasp: the commonest reason, where, and what to try.
-pub(crate) fn why_none(outcomes: &OutcomeCounts, hand: &Hand) -> String {
+pub(crate) fn why_none(outcomes: &OutcomeCounts, hand: &Hand, tips: TipModel) -> String {
     let counts = reasons(outcomes);
     let Some((reason, count)) = counts.iter().max_by_key(|(_, count)| *count) else {
         return "no pose was tried".to_owned();
@@ -40,8 +40,8 @@ pub(crate) fn why_none(outcomes: &OutcomeCounts, hand: &Hand) -> String {
             "the object may be too small or too thin for the hand, or the stand-off (standoff_m of the TOML) too large"
         }
         "parts_near_each_other" => "the object may be too small for all fingers at once",
-        _ if hand.fingers().len() < 3 => {
-            "two hard point contacts can never resist a torque about the line between them, so no grasp of this hand is force-closed, whatever the friction; a hand needs three fingers, or --power, where every link that touches is a contact"
+        _ if hand.fingers().len() < 3 && tips == TipModel::Point => {
+            "two hard point contacts can never resist a torque about the line between them, so no grasp of this hand is force-closed, whatever the friction; it needs soft fingers (--contact soft:RADIUS), a third finger, or --power, where every link that touches is a contact"
         }
         _ => "more friction (--friction) or a smaller --least-quality may help",
     };

@@ -214,7 +214,13 @@ mod tests {
 
     #[test]
     fn sliding_joints_are_shown_in_millimetres() {
-        let joint = |value, unit| joint_value(&JointRecord { value, unit });
+        let joint = |value, unit| {
+            joint_value(&JointRecord {
+                value,
+                unit,
+                follows: None,
+            })
+        };
         assert_eq!(joint(0.0205, Some(JointUnit::Metres)), "20.5 mm");
         assert_eq!(joint(0.5, Some(JointUnit::Radians)), "28.6°");
         assert_eq!(joint(-0.0, Some(JointUnit::Radians)), "0.0°");

@@ -60,6 +60,7 @@ fn row(
 ) -> Result<(), Box<dyn Error>> {
     let objective = Objective::new(convention, surface, &Point3::origin());
     let params = SynthesisParams {
+        tips: hand.tip_model(),
         poses: POSES,
         sampling: PoseSampling::of_hand(hand),
         rules: ClosingRules::default(),

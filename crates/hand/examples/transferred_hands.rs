@@ -94,6 +94,7 @@ impl Study {
         let hand = schunk_sdh()?;
         let convention = Convention::named("paper")?;
         let params = SynthesisParams {
+            tips: hand.tip_model(),
             poses,
             sampling: PoseSampling::of_hand(&hand),
             rules: ClosingRules::default(),
@@ -164,6 +165,7 @@ impl Study {
     ) -> Result<Option<Made>, Failure> {
         let params = ReachParams::default();
         let improve = ImproveParams {
+            tips: self.hand.tip_model(),
             trials: 40,
             spread: 4e-3,
             convention: self.convention.clone(),

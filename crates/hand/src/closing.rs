@@ -1,12 +1,14 @@
 //! Closing the fingers of a hand on an object without ever passing through it.
 
+mod group;
 mod wrapping;
 
 use nalgebra::Isometry3;
 
 use crate::collision::{CollisionObject, Precision, first_close_pair};
-use crate::hand::{Finger, Hand};
-use wrapping::wrap_finger;
+use crate::hand::{Finger, FingerGroup, Hand};
+use group::close_group;
+use wrapping::wrap_group;
 
 /// A finger that could close no farther than this in a step has come to rest; in units of closing.
 const LEAST_STEP: f64 = 1e-7;
@@ -80,9 +82,10 @@ pub enum Rejection {
 /// A hand whose fingers have closed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClosedHand {
-    /// One value a driven joint.
+    /// One value per driven joint.
     pub joints: Vec<f64>,
-    /// Pose of every link in the object frame.
+    /// Pose of every link in the object frame; that of the palm, the first, is the one from which the
+    /// hand closed, unless the palm gave way ([`crate::FingerGroup::compliant`]).
     pub object_from_links: Vec<Isometry3<f64>>,
     /// Links that hold the object, finger by finger, from the palm outwards.
     pub touching: Vec<usize>,
@@ -95,7 +98,8 @@ pub struct ClosedHand {
 ///
 /// Each step is the distance still free divided by a bound on the speed of the moving
 /// points (conservative advancement), so no part passes into the surface. Fingers stop
-/// one by one, each on its own. How they pass each other on the way depends on when each
+/// one by one, each on its own; fingers that the same joints close stop together. Where not all need to
+/// touch ([`Hand::least_fingers`]), those that meet nothing stay as they started. How they pass each other on the way depends on when each
 /// motor runs, which nobody has said, so their distance is tested where they end. Errors: the
 /// first rule broken.
 pub fn close_hand(
@@ -115,18 +119,53 @@ pub fn close_hand(
     hand.model
         .update_links(joints, links, &mut state.object_from_links);
     check_base(object, hand, &state.object_from_links, rules)?;
-    for index in 0..hand.fingers.len() {
-        check_start(object, hand, index, &state.object_from_links)?;
-        if rules.past_tips {
-            wrap_finger(object, hand, index, rules, &mut state)?;
-        } else {
-            close_finger(object, hand, index, rules, &mut state)?;
+    let mut missing = None;
+    for group in &hand.groups {
+        for &finger in &group.fingers {
+            check_start(object, hand, finger, &state.object_from_links)?;
         }
+        let closed = if rules.past_tips {
+            wrap_group(object, hand, group, rules, &mut state)
+        } else {
+            close_group(object, hand, group, rules, &mut state)
+        };
+        match closed {
+            Err(reason @ Rejection::TipDidNotArrive { .. }) => {
+                // What holds nothing stays open.
+                missing = missing.or(Some(reason));
+                reopen(hand, group, joints, &mut state);
+            }
+            other => other?,
+        }
+        if group.compliant {
+            check_base(object, hand, &state.object_from_links, rules)?;
+        }
+    }
+    if let Some(reason) = missing
+        && arrived(hand, &state) < hand.least_fingers
+    {
+        return Err(reason);
     }
     match first_close_pair(hand, &state.object_from_links, rules.self_clearance) {
         Some((first, second, _)) => Err(Rejection::PartsNear { first, second }),
         None => Ok(state),
     }
+}
+
+fn reopen(hand: &Hand, group: &FingerGroup, joints: &[f64], state: &mut ClosedHand) {
+    for &(driven, _) in &group.closing {
+        state.joints[driven] = joints[driven];
+    }
+    let links = group.moving_links.iter().copied();
+    hand.model
+        .update_links(&state.joints, links, &mut state.object_from_links);
+    state.touching.retain(|l| !group.moving_links.contains(l));
+}
+
+/// Number of fingers of which a link touches.
+fn arrived(hand: &Hand, state: &ClosedHand) -> usize {
+    let touches = |f: &&Finger| f.moving_links.iter().any(|l| state.touching.contains(l));
+    hand.fingers.iter().filter(touches).count()
 }
 
 /// Links that no finger moves must be clear of the object.
@@ -190,71 +229,6 @@ pub(crate) fn tip_gap(
     (lower, upper)
 }
 
-fn close_finger(
-    object: &CollisionObject<'_>,
-    hand: &Hand,
-    index: usize,
-    rules: &ClosingRules,
-    state: &mut ClosedHand,
-) -> Result<(), Rejection> {
-    let finger = &hand.fingers[index];
-    let start = state.joints.clone();
-    let end = closing_range(hand, finger, &start);
-    // The tip is brought to half of the gap, between touching and not having arrived.
-    let aim = 0.5 * rules.tip_gap;
-    let mut closed = 0.0;
-    loop {
-        let (tip_lower, tip_upper) = settle_tip(object, hand, finger, rules, state);
-        let free_step = part_step(object, hand, finger, rules, state)?;
-        if tip_lower <= 0.0 {
-            return Err(Rejection::StartsInObject { finger: index });
-        }
-        if tip_upper + object.mesh_error() < rules.tip_gap {
-            state.touching.extend_from_slice(&finger.tip_links);
-            return Ok(());
-        }
-        if closed >= end {
-            return Err(Rejection::TipDidNotArrive { finger: index });
-        }
-        let tip_speed = fastest(finger, |link| finger.tip_links.contains(&link));
-        let tip_step = (tip_lower - aim) / tip_speed;
-        if !(tip_step > LEAST_STEP) {
-            // As near as the facets tell apart, and that is not near enough.
-            return Err(Rejection::NoContact { finger: index });
-        }
-        closed = (closed + tip_step.min(free_step)).min(end);
-        apply(hand, finger, &start, closed, state);
-        state.steps += 1;
-    }
-}
-
-/// How far a finger can close before all its closing joints are at their limits.
-fn closing_range(hand: &Hand, finger: &Finger, joints: &[f64]) -> f64 {
-    let model = &hand.model;
-    finger
-        .closing
-        .iter()
-        .map(|&(driven, ratio)| {
-            let (lower, upper) = model.joints[model.driven[driven]].limits;
-            let end = if ratio > 0.0 { upper } else { lower };
-            ((end - joints[driven]) / ratio).max(0.0)
-        })
-        .fold(0.0, f64::max)
-}
-
-fn apply(hand: &Hand, finger: &Finger, start: &[f64], closed: f64, state: &mut ClosedHand) {
-    let model = &hand.model;
-    for &(driven, ratio) in &finger.closing {
-        let (lower, upper) = model.joints[model.driven[driven]].limits;
-        state.joints[driven] = (start[driven] + ratio * closed).clamp(lower, upper);
-    }
-    model.update_links(
-        &state.joints,
-        finger.moving_links.iter().copied(),
-        &mut state.object_from_links,
-    );
-}
-
 fn check_start(
     object: &CollisionObject<'_>,
     hand: &Hand,
@@ -266,52 +240,4 @@ fn check_start(
         return Err(Rejection::StartsInObject { finger: index });
     }
     Ok(())
-}
-
-/// Bounds on the tip's distance, exact enough to tell whether it has arrived.
-fn settle_tip(
-    object: &CollisionObject<'_>,
-    hand: &Hand,
-    finger: &Finger,
-    rules: &ClosingRules,
-    state: &ClosedHand,
-) -> (f64, f64) {
-    let precision = Precision {
-        cutoff: f64::INFINITY,
-        absolute: rules.tolerance,
-        relative: 0.1,
-    };
-    tip_gap(object, hand, finger, &state.object_from_links, precision)
-}
-
-/// The step that the parts other than tips allow; an error where one is too near.
-fn part_step(
-    object: &CollisionObject<'_>,
-    hand: &Hand,
-    finger: &Finger,
-    rules: &ClosingRules,
-    state: &ClosedHand,
-) -> Result<f64, Rejection> {
-    let mut step = f64::INFINITY;
-    for (&link, &speed) in finger.moving_links.iter().zip(&finger.speed_bounds) {
-        if finger.tip_links.contains(&link) || hand.shapes[link].is_empty() {
-            continue;
-        }
-        let free = clearance(object, hand, link, &state.object_from_links[link], rules);
-        if free < rules.object_clearance {
-            return Err(Rejection::PartNearObject { link });
-        }
-        step = step.min(free / speed);
-    }
-    Ok(step)
-}
-
-fn fastest(finger: &Finger, wanted: impl Fn(usize) -> bool) -> f64 {
-    finger
-        .moving_links
-        .iter()
-        .zip(&finger.speed_bounds)
-        .filter(|(link, _)| wanted(**link))
-        .map(|(_, speed)| *speed)
-        .fold(0.0, f64::max)
 }

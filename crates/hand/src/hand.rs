@@ -1,5 +1,7 @@
 //! A hand ready for use: the model with its spec resolved and checked.
 
+mod groups;
+mod jaws;
 mod problems;
 mod resolve;
 
@@ -10,7 +12,13 @@ use crate::collision::{GeometryError, LinkShape};
 use crate::hand_spec::HandSpec;
 use crate::kinematics::KinematicsError;
 use crate::model::HandModel;
-use resolve::{approach, fingers, link_shapes, palm, preshapes, standoff, tested_pairs};
+use crate::tip_model::TipModel;
+pub use groups::FingerGroup;
+pub use jaws::Jaws;
+use resolve::{
+    approach, fingers, least_fingers, link_shapes, pad_radius, palm, preshapes, separate, standoff,
+    tested_pairs,
+};
 
 /// A finger of a [`Hand`].
 #[derive(Debug, Clone)]
@@ -21,12 +29,9 @@ pub struct Finger {
     pub tip_links: Vec<usize>,
     /// Driven joints that close it with their share of the motion.
     pub closing: Vec<(usize, f64)>,
-    /// Links that move when it closes, parents first.
+    /// Links that move when it closes, parents first; of fingers that close together each link belongs
+    /// to one.
     pub moving_links: Vec<usize>,
-    /// For each moving link, a bound on the speed of its points, in metres a unit of closing.
-    pub(crate) speed_bounds: Vec<f64>,
-    /// The share of each closing joint in these bounds.
-    pub(crate) joint_speeds: Vec<Vec<f64>>,
 }
 
 /// Joint values from which fingers close.
@@ -44,6 +49,9 @@ pub struct Hand {
     pub(crate) name: String,
     pub(crate) model: HandModel,
     pub(crate) fingers: Vec<Finger>,
+    pub(crate) groups: Vec<FingerGroup>,
+    pub(crate) least_fingers: usize,
+    pad_radius: Option<f64>,
     pub(crate) preshapes: Vec<Preshape>,
     pub(crate) shapes: Vec<LinkShape>,
     pub(crate) tested_pairs: Vec<(usize, usize)>,
@@ -125,6 +133,21 @@ pub enum HandError {
         /// The link.
         link: String,
     },
+    /// Fingers share a closing joint but do not close alike.
+    #[error(
+        "fingers '{first}' and '{second}' share a closing joint; give both the same closing joints and shares"
+    )]
+    UnlikeClosing {
+        /// A finger.
+        first: String,
+        /// Another.
+        second: String,
+    },
+    /// The palm is to give way, but no two fingers close together.
+    #[error(
+        "compliant: no two fingers are closed by the same joints, so the palm has no reason to give way"
+    )]
+    NotCompliant,
     /// A name is used twice.
     #[error("two {what} are named '{name}'")]
     Duplicate {
@@ -165,13 +188,18 @@ impl Hand {
     pub fn new(model: HandModel, spec: &HandSpec) -> Result<Self, HandError> {
         palm(&model, spec)?;
         let shapes = link_shapes(&model)?;
-        let fingers = fingers(&model, &shapes, &spec.finger)?;
+        let mut fingers = fingers(&model, &shapes, &spec.finger)?;
+        let groups = groups::groups(&model, &shapes, spec, &mut fingers)?;
+        separate(&model, &fingers)?;
         let preshapes = preshapes(&model, &spec.preshape)?;
         let (approach_axis, approach_point) = approach(spec)?;
         Ok(Hand {
             name: spec.name.clone(),
             tested_pairs: tested_pairs(&model, &shapes, spec)?,
+            least_fingers: least_fingers(spec)?,
+            pad_radius: pad_radius(spec)?,
             fingers,
+            groups,
             preshapes,
             shapes,
             approach_axis,
@@ -194,6 +222,45 @@ impl Hand {
     /// The fingers, in the order of the spec (and of the contacts of a grasp).
     pub fn fingers(&self) -> &[Finger] {
         &self.fingers
+    }
+
+    /// The fingers by the joints that close them, in the order of their first fingers.
+    pub fn groups(&self) -> &[FingerGroup] {
+        &self.groups
+    }
+
+    /// How many fingers must touch for a grasp.
+    pub fn least_fingers(&self) -> usize {
+        self.least_fingers
+    }
+
+    /// What the contacts of the tips transmit unless a user says otherwise: soft fingers of the spec's
+    /// pad radius for a hand of two fingers, points for others.
+    pub fn tip_model(&self) -> TipModel {
+        match self.fingers.len() {
+            2 => TipModel::Soft {
+                radius: self.pad_radius.unwrap_or(Self::USUAL_PAD_RADIUS),
+            },
+            _ => TipModel::Point,
+        }
+    }
+
+    /// Whether the spec says how large the tips' pads are.
+    pub fn has_pad_radius(&self) -> bool {
+        self.pad_radius.is_some()
+    }
+
+    /// The radius of a pad where the spec has none, metres.
+    pub const USUAL_PAD_RADIUS: f64 = 5e-3;
+
+    /// The joints with every finger opened by `opening` units of closing, within the limits.
+    pub fn opened(&self, joints: &[f64], opening: f64) -> Vec<f64> {
+        let mut open = joints.to_vec();
+        for &(driven, ratio) in self.groups.iter().flat_map(|g| &g.closing) {
+            open[driven] -= opening * ratio;
+        }
+        self.model.clamp_to_limits(&mut open);
+        open
     }
 
     /// The pre-shapes.

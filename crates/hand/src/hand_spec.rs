@@ -27,6 +27,17 @@ pub struct HandSpec {
     /// Least and greatest distance from the surface to the approach point of sampled
     /// poses, along the line of approach, in metres.
     pub standoff_m: [f64; 2],
+    /// Whether the palm gives way along the line between the tips of two fingers that the same joints
+    /// close, until both touch, as a gripper on a robot's arm does; true unless said otherwise.
+    #[serde(default)]
+    pub compliant: Option<bool>,
+    /// Radius of the part of a tip that touches, metres: the disc of the soft contacts of a hand of two
+    /// fingers.
+    #[serde(default)]
+    pub pad_radius_m: Option<f64>,
+    /// How many fingers must touch for a grasp; all unless said otherwise.
+    #[serde(default)]
+    pub least_fingers: Option<usize>,
     /// Which links are not tested against each other.
     #[serde(default)]
     pub self_distance: SelfDistance,
@@ -70,7 +81,8 @@ pub struct FingerSpec {
     /// The links that make its tip: those that may touch the object.
     pub tips: Vec<String>,
     /// The driven joints that close it, each with its share of the closing motion
-    /// (radians or metres a unit of closing; negative where closing lowers the value).
+    /// (radians or metres per unit of closing; negative where closing lowers the value). Fingers that
+    /// the same joints close have the same shares.
     pub closing: BTreeMap<String, f64>,
 }
 

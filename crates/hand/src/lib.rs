@@ -20,6 +20,7 @@
 //! ```
 
 mod alignment;
+mod built_in;
 mod check;
 mod closing;
 mod collision;
@@ -32,16 +33,17 @@ mod mesh_file;
 mod model;
 mod pose_sampling;
 mod reach;
-mod sdh;
 mod synthesis;
+mod tip_model;
 mod urdf;
 
 pub use alignment::carried_pose;
+pub use built_in::{LoadError, SDH_SPEC, SDH_URDF, schunk_sdh};
 pub use check::{Finding, Severity, check_hand, hand_meshes};
 pub use closing::{ClosedHand, ClosingRules, Rejection, close_hand};
 pub use collision::{CollisionObject, Gap, GeometryError, ObjectError, Precision};
 pub use contact::{TipContact, link_contact, tip_contact};
-pub use hand::{Finger, Hand, HandError, Preshape};
+pub use hand::{Finger, FingerGroup, Hand, HandError, Jaws, Preshape};
 pub use hand_spec::{FingerSpec, HandSpec, PreshapeSpec, SelfDistance, SpecTextError};
 pub use kinematics::KinematicsError;
 pub use mesh_file::{MeshFileError, mesh_vertices};
@@ -51,11 +53,11 @@ pub use reach::{
     HandState, ImproveParams, Improvement, ReachOutcome, ReachParams, Reached, Reacher,
     reach_contacts,
 };
-pub use sdh::{LoadError, SDH_SPEC, SDH_URDF, schunk_sdh};
 pub use synthesis::{
     HandGrasp, Outcome, OutcomeCounts, Synthesis, SynthesisError, SynthesisParams, collect,
     evaluate_pose, synthesize, synthesize_watched,
 };
+pub use tip_model::TipModel;
 pub use urdf::{
     MAX_LENGTH_M, MAX_LINKS, MAX_PIECES, MAX_URDF_BYTES, MAX_URDF_DEPTH, MAX_URDF_ELEMENTS,
     UrdfError, load_urdf, load_urdf_with_meshes, urdf_text,

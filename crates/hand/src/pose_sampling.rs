@@ -1,10 +1,15 @@
-//! Random hand poses around an object (paper, Sec. IV-C).
+//! Random hand poses around an object: from all sides (paper, Sec. IV-C), or for two fingers where
+//! the surface has antipodal pairs.
+
+mod antipodal;
+mod obstacles;
 
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, UnitVector3, Vector3};
 use rand::{Rng, RngExt};
 use shape::RadialShape;
 
 use crate::hand::Hand;
+use antipodal::Pairs;
 
 /// A pose of the hand before its fingers close.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,20 +31,32 @@ pub struct PoseSampling {
     pub standoff: (f64, f64),
     /// Indices of the pre-shapes to draw from; none gives no poses.
     pub preshapes: Vec<usize>,
+    /// Half angle of the cones in which the line between two jaws must lie at both contacts, radians;
+    /// `None` aims every pose at the origin.
+    pub antipodal: Option<f64>,
 }
 
 impl PoseSampling {
-    /// The upper hemisphere, every pre-shape, the stand-off range of the hand's spec.
+    /// The upper hemisphere, every pre-shape, the stand-off range of the hand's spec; antipodal pairs
+    /// within the friction cones of μ = 0.5 for a hand of two fingers.
     pub fn of_hand(hand: &Hand) -> Self {
         PoseSampling {
             least_height: 0.0,
             standoff: hand.standoff(),
             preshapes: (0..hand.preshapes().len()).collect(),
+            antipodal: (hand.fingers().len() == 2).then(|| 0.5_f64.atan()),
         }
     }
 
     /// Draws `count` poses: the hand is aimed at the origin from a uniform direction, at a
     /// uniform stand-off and roll, in a uniformly chosen pre-shape.
+    ///
+    /// With [`Self::antipodal`] the jaws of the pre-shape are set about a pair of points on the surface
+    /// instead: the first in a uniform direction, the line between them uniform in the friction cone of
+    /// the first and within that of the second, their distance less than the opening; the approach is
+    /// uniform about the line, among the directions in which points of the surface are clear of the
+    /// links that may not touch, with the fingers open and closed. Where
+    /// no such pair is found in a hundred draws, or the hand has no jaws, the pose is one of those above.
     ///
     /// The same generator state gives the same poses.
     pub fn sample<R: Rng + ?Sized>(
@@ -52,7 +69,19 @@ impl PoseSampling {
         if self.preshapes.is_empty() {
             return Vec::new();
         }
-        (0..count).map(|_| self.draw(surface, hand, rng)).collect()
+        let pairs = self
+            .antipodal
+            .map(|cone| Pairs::new(surface, hand, &self.preshapes, cone, self.least_height));
+        let found = |rng: &mut R| {
+            let (which, pose) = pairs.as_ref()?.draw(hand, rng)?;
+            Some(HandPose {
+                object_from_palm: pose,
+                preshape: self.preshapes[which],
+            })
+        };
+        (0..count)
+            .map(|_| found(rng).unwrap_or_else(|| self.draw(surface, hand, rng)))
+            .collect()
     }
 
     fn draw<R: Rng + ?Sized>(&self, surface: &RadialShape, hand: &Hand, rng: &mut R) -> HandPose {

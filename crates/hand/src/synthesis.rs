@@ -15,6 +15,7 @@ use crate::collision::{CollisionObject, ObjectError};
 use crate::contact::{TipContact, link_contact, tip_contact};
 use crate::hand::Hand;
 use crate::pose_sampling::{HandPose, PoseSampling};
+use crate::tip_model::TipModel;
 
 /// What a synthesis run does.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +30,8 @@ pub struct SynthesisParams {
     pub convention: Convention,
     /// The point about which torques are taken, object frame, metres.
     pub centre: Point3<f64>,
+    /// What the contacts transmit, apart from friction.
+    pub tips: TipModel,
     /// Grasps of lower quality count as unstable; the paper's bound is 0.01.
     pub least_quality: f64,
 }
@@ -225,7 +228,10 @@ pub fn evaluate_pose(
         Ok(grasp) => grasp,
         Err(reason) => return Ok(Outcome::Rejected(reason)),
     };
+    let friction = params.convention.friction;
+    let models = params.tips.of_contacts(friction, grasp.contacts.len());
     let model = GraspModel::new(&grasp.contacts, &params.centre, &params.convention);
+    let model = model.with_contact_models(&models);
     let found = epsilon(&model, &mut Workspace::new())?;
     let quality = found.value(&params.convention);
     let grasp = HandGrasp { quality, ..grasp };
@@ -245,7 +251,7 @@ fn close_and_touch(
     let start = &hand.preshapes()[pose.preshape].joints;
     let closed = close_hand(object, hand, &pose.object_from_palm, start, rules)?;
     let mut grasp = HandGrasp {
-        object_from_palm: pose.object_from_palm,
+        object_from_palm: closed.object_from_links[0],
         joints: closed.joints,
         preshape: pose.preshape,
         contacts: Vec::with_capacity(hand.fingers().len()),
@@ -266,7 +272,12 @@ fn close_and_touch(
     let poses = &closed.object_from_links;
     for (finger, of_finger) in hand.fingers().iter().enumerate() {
         let near = |c: &TipContact| c.gap < rules.tip_gap;
+        let touches = |l: &usize| closed.touching.contains(l);
         if !rules.past_tips {
+            // Where not all fingers need to touch, this one may not.
+            if !of_finger.tip_links.iter().any(touches) {
+                continue;
+            }
             let contact = tip_contact(object, hand, of_finger, poses)
                 .filter(near)
                 .ok_or(Rejection::NoContact { finger })?;

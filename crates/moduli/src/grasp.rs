@@ -1,7 +1,7 @@
 //! Grasps: a point of (S²)^m with its contacts, quality, origin and hand.
 
 use grasp::{Contact, Epsilon};
-use hand::{Hand, OutcomeCounts};
+use hand::OutcomeCounts;
 use nalgebra::{Isometry3, Point3, UnitVector3};
 use sph::Direction;
 
@@ -184,14 +184,4 @@ pub fn ranked(mut grasps: Vec<Grasp>) -> Vec<Grasp> {
     grasps.retain(|g| g.quality() > 0.0);
     grasps.sort_by(|a, b| b.quality().total_cmp(&a.quality()));
     grasps
-}
-
-/// The joints with every finger opened by `opening` units of closing, within the limits.
-pub(crate) fn opened(hand: &Hand, joints: &[f64], opening: f64) -> Vec<f64> {
-    let mut open = joints.to_vec();
-    for &(driven, ratio) in hand.fingers().iter().flat_map(|f| &f.closing) {
-        open[driven] -= opening * ratio;
-    }
-    hand.model().clamp_to_limits(&mut open);
-    open
 }

@@ -2,16 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use hand::Hand;
+use hand::{Drive, Hand, Joint};
 use record::grasps::{
-    AssessmentRecord, ExecutionRecord, GRASPS_VERSION, HandRecord, JointRecord, PoseRecord,
-    SourceRecord,
+    AssessmentRecord, ConventionRecord, ExecutionRecord, GRASPS_VERSION, HandRecord, JointRecord,
+    PoseRecord, SourceRecord,
 };
 use record::{GraspRecord, GraspsFile};
 
 use crate::grasp::{Grasp, HandPlacement, Source};
 use crate::measure::Measure;
-use crate::records::{convention_record, joint_record};
+use crate::records::{contact_model_record, convention_record, joint_record};
 
 impl Measure<'_> {
     /// The file of ranked grasps of a hand; ranks follow the order of the list.
@@ -22,7 +22,8 @@ impl Measure<'_> {
                 .map(|placement| hand_record(grasp, placement, hand));
             grasp_record(i + 1, grasp, source_record(grasp.source()), hand)
         };
-        self.file_of(ranked.iter().enumerate().map(record).collect())
+        self.for_hand(hand)
+            .file_of(ranked.iter().enumerate().map(record).collect())
     }
 
     /// The file of grasps that are records already.
@@ -30,7 +31,10 @@ impl Measure<'_> {
         GraspsFile {
             version: GRASPS_VERSION,
             object: self.object().object_record(),
-            convention: convention_record(self.convention()),
+            convention: ConventionRecord {
+                contact: contact_model_record(self.tips()),
+                ..convention_record(self.convention())
+            },
             grasps,
         }
     }
@@ -95,9 +99,18 @@ fn hand_record(grasp: &Grasp, placement: &HandPlacement, hand: &Hand) -> HandRec
     }
 }
 
+/// All joints that move, those that follow others too.
 fn by_name(hand: &Hand, joints: &[f64]) -> BTreeMap<String, JointRecord> {
-    let driven = hand.model().driven_joints().zip(joints);
-    driven
-        .map(|(joint, value)| (joint.name.clone(), joint_record(joint.kind, *value)))
-        .collect()
+    let model = hand.model();
+    let driven = model.driven_names();
+    let record = |joint: &Joint| {
+        let follows = match joint.drive {
+            Drive::Fixed => return None,
+            Drive::Driven(_) => None,
+            Drive::Mimic { driven: index, .. } => Some(driven[index].to_owned()),
+        };
+        let plain = joint_record(joint.kind, joint.value(joints));
+        Some((joint.name.clone(), JointRecord { follows, ..plain }))
+    };
+    model.joints().iter().filter_map(record).collect()
 }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::carried::CarriedGrasp;
 use crate::error::Error;
-use crate::grasp::{HandPlacement, Source, opened};
+use crate::grasp::{HandPlacement, Source};
 use crate::measure::Measure;
 
 /// How hard a hand is looked for.
@@ -118,6 +118,7 @@ impl Finder<'_> {
             spread: self.search.spread,
             convention: self.measure.convention().clone(),
             centre: self.measure.centre(),
+            tips: self.measure.tips(),
         };
         let wanted = carried.grasp.contacts().to_vec();
         let found = self
@@ -149,7 +150,7 @@ impl Finder<'_> {
         let opening = ReachParams::default().opening;
         HandPlacement {
             centred_from_palm: found.object_from_palm,
-            pregrasp_joints: opened(self.hand, &found.joints, opening),
+            pregrasp_joints: self.hand.opened(&found.joints, opening),
             joints: found.joints,
             contact_error: found.position_error,
             met: true,

@@ -63,7 +63,7 @@ pub use ::grasp::{
     CentreRule, Contact, Convention, EdgeNorm, Edges, Epsilon, Resistance, TangentRule,
     TorqueLength, Wrench,
 };
-pub use ::hand::{Hand, OutcomeCounts};
+pub use ::hand::{Hand, OutcomeCounts, TipModel};
 pub use ::record;
 pub use ::shape::io::Format;
 pub use ::shape::{FitSettings, PointCloud, RadialShape, SphericalShape, Surface};

@@ -58,7 +58,7 @@ pub struct Neighbour {
     /// Distance d of the shapes (Sec. III-A), metres.
     pub distance: f64,
     object: Object,
-    grasps: Vec<LibraryGrasp>,
+    pub(crate) grasps: Vec<LibraryGrasp>,
     /// Name of the hand that made the grasps.
     hand: String,
 }
@@ -179,7 +179,8 @@ impl Library {
 }
 
 /// Carries the first `grasps` grasps of every neighbour to the object of `measure`, over the threads
-/// of rayon's pool; `done` is called once per grasp.
+/// of rayon's pool; those of another number of contacts than the hand has fingers are left
+/// out. `done` is called once per grasp.
 pub(crate) fn carry(
     measure: &Measure<'_>,
     hand: &Hand,
@@ -199,7 +200,9 @@ pub(crate) fn carry(
                 object: neighbour.object.name().to_owned(),
                 grasp: index,
             })?;
-            jobs.push((neighbour, pair, grasp, directions));
+            if directions.len() == hand.fingers().len() {
+                jobs.push((neighbour, pair, grasp, directions));
+            }
         }
     }
     jobs.into_par_iter()

@@ -1,6 +1,7 @@
 //! How quality is measured on one object, and when a grasp counts as stable.
 
 use grasp::{Contact, Convention, Epsilon, GraspModel, QualityError, Workspace};
+use hand::{Hand, TipModel};
 use nalgebra::Point3;
 use space::point::contacts_on;
 use space::{MonotoneAscent, Objective, ResolvedConvention};
@@ -20,6 +21,7 @@ pub struct Measure<'a> {
     object: &'a Object,
     rule: Convention,
     resolved: ResolvedConvention,
+    tips: Option<TipModel>,
 }
 
 impl Object {
@@ -44,7 +46,29 @@ impl<'a> Measure<'a> {
             object,
             rule: rule.clone(),
             resolved: ResolvedConvention::new(rule, object.shape(), &origin),
+            tips: None,
         })
+    }
+
+    /// The same with contacts of this model. Without it contacts are points, and those of a hand what
+    /// [`Hand::tip_model`] says; ascents and transfers take all contacts for points.
+    #[must_use]
+    pub fn with_tips(self, tips: TipModel) -> Self {
+        Self {
+            tips: Some(tips),
+            ..self
+        }
+    }
+
+    /// The measure of a hand's grasps: contacts as the hand has them where none were given.
+    pub(crate) fn for_hand(&self, hand: &Hand) -> Self {
+        let tips = self.tips.unwrap_or_else(|| hand.tip_model());
+        self.clone().with_tips(tips)
+    }
+
+    /// What contacts transmit, apart from friction.
+    pub fn tips(&self) -> TipModel {
+        self.tips.unwrap_or_default()
     }
 
     /// The object.
@@ -92,8 +116,11 @@ impl<'a> Measure<'a> {
 
     fn epsilon_of(&self, contacts: &[Contact]) -> Result<Epsilon, QualityError> {
         let centre = self.centre();
+        let models = self
+            .tips()
+            .of_contacts(self.convention().friction, contacts.len());
         let model = GraspModel::new(contacts, &centre, self.convention());
-        grasp::epsilon(&model, &mut Workspace::new())
+        grasp::epsilon(&model.with_contact_models(&models), &mut Workspace::new())
     }
 
     /// The grasp with contacts in the given directions.

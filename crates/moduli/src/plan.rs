@@ -83,7 +83,7 @@ pub struct TransferCounts {
     pub with_hand: usize,
     /// Of these, those whose contacts the hand meets; it makes others near the contacts of the rest.
     pub met: usize,
-    /// Of the kept ones, those with another number of contacts than the hand has fingers.
+    /// Grasps left out, because they have another number of contacts than the hand has fingers.
     pub of_other_count: usize,
 }
 
@@ -136,9 +136,10 @@ impl Plan {
             ..TransferCounts::default()
         };
         let mut kept = best(all, options.keep);
-        let fingers = hand.fingers().len();
-        let other = |grasp: &Grasp| grasp.contacts().len() != fingers;
-        counts.of_other_count = kept.iter().filter(|c| other(&c.grasp)).count();
+        let tried = neighbours
+            .iter()
+            .map(|n| n.grasps.len().min(options.grasps));
+        counts.of_other_count = tried.sum::<usize>() - counts.all;
         let step = counter(Stage::Reach, kept.len(), progress);
         give_hands(measure, hand, &mut kept, &options.search, &step)?;
         let grasps: Vec<Grasp> = kept.into_iter().map(|c| c.grasp).collect();

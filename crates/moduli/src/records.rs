@@ -1,10 +1,10 @@
 //! Stored types of `record` made from the types of computation, and turned back into them.
 
 use grasp::{CentreRule, Convention, ConventionError, EdgeNorm, Edges, TangentRule, TorqueLength};
-use hand::JointKind;
+use hand::{JointKind, TipModel};
 use record::grasps::{
-    CentreRecord, ConventionRecord, EdgeNormRecord, EdgesRecord, JointRecord, JointUnit,
-    TangentRecord,
+    CentreRecord, ContactModelRecord, ConventionRecord, EdgeNormRecord, EdgesRecord, JointRecord,
+    JointUnit, TangentRecord,
 };
 use record::{LibraryGrasp, ShapeRecord};
 use shape::{RadialError, RadialShape};
@@ -74,6 +74,7 @@ pub fn joint_record(kind: JointKind, value: f64) -> JointRecord {
     JointRecord {
         value,
         unit: Some(unit),
+        follows: None,
     }
 }
 
@@ -106,6 +107,25 @@ pub fn convention_record(convention: &Convention) -> ConventionRecord {
             TangentRule::Projected(axis) => TangentRecord::Projected(axis.into()),
         },
         stable_above: Some(convention.stable_above),
+        contact: None,
+    }
+}
+
+/// What contacts transmit, as it is stored; none for points.
+pub fn contact_model_record(tips: TipModel) -> Option<ContactModelRecord> {
+    match tips {
+        TipModel::Point => None,
+        TipModel::Soft { radius } => Some(ContactModelRecord::Soft { radius_m: radius }),
+        TipModel::Patch { radius } => Some(ContactModelRecord::Patch { radius_m: radius }),
+    }
+}
+
+/// What contacts transmit, from a record.
+pub fn tip_model(record: Option<ContactModelRecord>) -> TipModel {
+    match record {
+        None => TipModel::Point,
+        Some(ContactModelRecord::Soft { radius_m: radius }) => TipModel::Soft { radius },
+        Some(ContactModelRecord::Patch { radius_m: radius }) => TipModel::Patch { radius },
     }
 }
 

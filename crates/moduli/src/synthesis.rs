@@ -66,8 +66,9 @@ impl Measure<'_> {
         poses: &Poses,
         pose_done: &(dyn Fn() + Sync),
     ) -> Result<Grasps, Error> {
-        let found = self.close_hand(hand, poses, pose_done)?;
-        let grasp = |found: &HandGrasp| self.of_hand_grasp(hand, found);
+        let measure = self.for_hand(hand);
+        let found = measure.close_hand(hand, poses, pose_done)?;
+        let grasp = |found: &HandGrasp| measure.of_hand_grasp(hand, found);
         Ok(Grasps {
             list: found.grasps.iter().map(grasp).collect::<Result<_, _>>()?,
             outcomes: Some(found.outcomes),
@@ -86,12 +87,15 @@ impl Measure<'_> {
         } else {
             poses.preshapes.clone()
         };
+        let usual = PoseSampling::of_hand(hand);
+        let cone = self.convention().friction.atan();
         let params = SynthesisParams {
             poses: poses.count,
             sampling: PoseSampling {
                 preshapes,
                 standoff: poses.standoff.unwrap_or(hand.standoff()),
-                ..PoseSampling::of_hand(hand)
+                antipodal: usual.antipodal.map(|usual| usual.min(cone)),
+                ..usual
             },
             rules: ClosingRules {
                 past_tips: poses.power,
@@ -99,6 +103,7 @@ impl Measure<'_> {
             },
             convention: self.convention().clone(),
             centre: self.centre(),
+            tips: self.tips(),
             least_quality: poses.least_quality.unwrap_or(self.stable_above()),
         };
         let mut generator = ChaCha8Rng::seed_from_u64(poses.seed);

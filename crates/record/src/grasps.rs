@@ -13,7 +13,9 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 pub use contact::ContactRecord;
-pub use convention::{CentreRecord, ConventionRecord, EdgeNormRecord, EdgesRecord, TangentRecord};
+pub use convention::{
+    CentreRecord, ContactModelRecord, ConventionRecord, EdgeNormRecord, EdgesRecord, TangentRecord,
+};
 pub use hand::{ExecutionRecord, HandRecord, JointRecord, JointUnit, PoseRecord};
 pub use source::SourceRecord;
 

@@ -65,7 +65,8 @@ fn pose(text: &mut String, hand: &HandRecord) {
 
 fn joints(text: &mut String, key: &str, values: &BTreeMap<String, JointRecord>) {
     let _ = writeln!(text, "    {key}:");
-    for (name, joint) in values {
+    let driven = values.iter().filter(|(_, joint)| joint.follows.is_none());
+    for (name, joint) in driven {
         line(text, 6, &quoted(name), &number(joint.value));
     }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use hand::TipModel;
 use serde::Serialize;
 
 use super::ConventionOptions;
@@ -20,9 +21,10 @@ pub(crate) struct QualityOptions {
     #[arg(long, value_enum, default_value_t = Metric::Epsilon)]
     pub(crate) metric: Metric,
     /// Contact model: `point`, `soft:RADIUS` (a disc under even pressure, with torsion 2/3 μ RADIUS) or
-    /// `patch:RADIUS` (four point contacts on a square pad). RADIUS in metres.
-    #[arg(long, default_value = "point", value_parser = contact_option)]
-    pub(crate) contact: ContactOption,
+    /// `patch:RADIUS` (four point contacts on a square pad). RADIUS in metres. By default the model of
+    /// the file, `point` where it has none.
+    #[arg(long, value_parser = contact_option)]
+    pub(crate) contact: Option<TipModel>,
     /// File for the proofs of the intervals of epsilon quality, as JSON.
     #[arg(long, value_name = "FILE")]
     pub(crate) certificate: Option<PathBuf>,
@@ -49,14 +51,7 @@ pub(crate) enum Metric {
 }
 
 /// A contact model and its size in metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum ContactOption {
-    Point,
-    Soft(f64),
-    Patch(f64),
-}
-
-fn contact_option(text: &str) -> Result<ContactOption, String> {
+pub(super) fn contact_option(text: &str) -> Result<TipModel, String> {
     let radius = |text: &str| {
         let radius = text.parse::<f64>().ok();
         radius
@@ -64,9 +59,9 @@ fn contact_option(text: &str) -> Result<ContactOption, String> {
             .ok_or_else(|| format!("`{text}` is not a radius; expected metres above 0"))
     };
     match text.split_once(':') {
-        None if text == "point" => Ok(ContactOption::Point),
-        Some(("soft", size)) => radius(size).map(ContactOption::Soft),
-        Some(("patch", size)) => radius(size).map(ContactOption::Patch),
+        None if text == "point" => Ok(TipModel::Point),
+        Some(("soft", size)) => radius(size).map(|radius| TipModel::Soft { radius }),
+        Some(("patch", size)) => radius(size).map(|radius| TipModel::Patch { radius }),
         _ => Err("expected `point`, `soft:RADIUS` or `patch:RADIUS`".to_owned()),
     }
 }

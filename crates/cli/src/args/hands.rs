@@ -4,18 +4,23 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
+use hand::TipModel;
+
+use super::grasps::contact_option;
 use super::{CloudOptions, ConventionOptions, count_in};
 
 /// Which hand.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct HandOptions {
-    /// `sdh`, the built-in Schunk SDH, or the URDF of another hand.
-    #[arg(long, value_name = "sdh|URDF", default_value = "sdh")]
+    /// A built-in hand (`sdh`, the Schunk SDH; `panda`, a parallel gripper of the Franka kind;
+    /// `robotiq_2f85`, a gripper of the 2F-85 kind), or the URDF of another hand.
+    #[arg(long, value_name = "NAME|URDF", default_value = "sdh")]
     pub(crate) hand: PathBuf,
     /// TOML that says how the hand is used; by default the one beside the URDF, with the same name.
     #[arg(long, value_name = "TOML")]
     pub(crate) spec: Option<PathBuf>,
-    /// Folder in which `package://` meshes are found; by default that of the URDF.
+    /// Folder in which `package://` meshes are found; by default that of the URDF and the packages that
+    /// hold it or lie beside it.
     #[arg(long, value_name = "DIR")]
     pub(crate) package_root: Option<PathBuf>,
 }
@@ -51,6 +56,10 @@ pub(crate) struct SynthesizeOptions {
     /// the hand.
     #[arg(long, value_name = "NAME")]
     pub(crate) preshape: Vec<String>,
+    /// Contact model of the tips: `point`, `soft:RADIUS` or `patch:RADIUS`, RADIUS in metres. By default
+    /// soft fingers of the TOML's pad radius for a hand of two fingers, points for others.
+    #[arg(long, value_parser = contact_option)]
+    pub(crate) contact: Option<TipModel>,
     #[command(flatten)]
     pub(crate) convention: ConventionOptions,
 }
@@ -73,16 +82,21 @@ pub(crate) enum HandCommand {
 
 #[derive(Debug, Args)]
 pub(crate) struct HandCheckOptions {
-    /// The URDF, or `sdh` for the built-in hand.
+    /// The URDF, or the name of a built-in hand: `sdh`, `panda` or `robotiq_2f85`.
     pub(crate) urdf: PathBuf,
     /// TOML that says how the hand is used; by default the one beside the URDF, with the same name.
     pub(crate) spec: Option<PathBuf>,
-    /// Folder in which `package://` meshes are found; by default that of the URDF.
+    /// Folder in which `package://` meshes are found; by default that of the URDF and the packages that
+    /// hold it or lie beside it.
     #[arg(long, value_name = "DIR")]
     pub(crate) package_root: Option<PathBuf>,
     /// File for the page; out/NAME/hand.html by default.
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
+    /// Contact model of the tips: `point`, `soft:RADIUS` or `patch:RADIUS`, RADIUS in metres. By default
+    /// soft fingers of the TOML's pad radius for a hand of two fingers, points for others.
+    #[arg(long, value_parser = contact_option)]
+    pub(crate) contact: Option<TipModel>,
     /// Diameter of the ball on which the hand is tried, millimetres.
     #[arg(
         long,
@@ -109,6 +123,10 @@ pub(crate) struct GraspOptions {
     pub(crate) fit: CloudOptions,
     #[command(flatten)]
     pub(crate) hand: HandOptions,
+    /// Contact model of the tips: `point`, `soft:RADIUS` or `patch:RADIUS`, RADIUS in metres. By default
+    /// soft fingers of the TOML's pad radius for a hand of two fingers, points for others.
+    #[arg(long, value_parser = contact_option)]
+    pub(crate) contact: Option<TipModel>,
     #[command(flatten)]
     pub(crate) convention: ConventionOptions,
     /// Number of library objects to transfer from, the nearest ones.

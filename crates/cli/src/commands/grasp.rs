@@ -37,7 +37,8 @@ struct GraspLine {
     transferred_with_hand: usize,
     /// Of these, those whose contacts the hand meets.
     transferred_met: usize,
-    /// Transferred grasps with another number of contacts than the hand has fingers.
+    /// Grasps of the library left out, because they have another number of contacts than the hand has
+    /// fingers.
     transferred_of_other_count: usize,
     poses: usize,
     synthesized: usize,
@@ -122,7 +123,9 @@ impl Shared<'_> {
         let (object, _) = input::fitted(cloud, name, &options.fit)?;
         let object = object.with_warnings(self.warnings.iter().cloned());
         let refused = |e: moduli::Error| Failure::refused(format!("{name}: {e}"));
+        let tips = options.contact.unwrap_or_else(|| hand.tip_model());
         let measure = object.measure(&self.convention).map_err(refused)?;
+        let measure = measure.with_tips(tips);
         let bars = Bars::new(common.quiet);
         let planned = plan(options, common)
             .run(&measure, hand, &self.library, &|p| bars.show(p))
@@ -146,7 +149,7 @@ impl Shared<'_> {
         if ranked.is_empty() {
             return Err(Failure::refused(format!(
                 "{name}: no force-closed grasp found; {}; more --poses or --neighbours may help",
-                why_none(&planned.outcomes, hand)
+                why_none(&planned.outcomes, hand, tips)
             )));
         }
         Ok(())
@@ -295,7 +298,7 @@ impl GraspLine {
         ));
         if self.transferred_of_other_count > 0 {
             output::say(format!(
-                "{} transferred grasps come without a hand: the library's have as many contacts as the SDH has fingers, three, and {} has {}",
+                "{} grasps of the library are left out: they have as many contacts as the SDH has fingers, three, and {} has {}",
                 self.transferred_of_other_count,
                 self.hand,
                 hand.fingers().len()

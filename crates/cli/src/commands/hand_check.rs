@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use hand::Hand;
+use hand::{Hand, TipModel};
 use serde::Serialize;
 
 use crate::args::{Common, HandCheckOptions, HandOptions};
@@ -49,10 +49,15 @@ pub(crate) fn run(options: &HandCheckOptions, common: &Common) -> Result<(), Fai
     let hand = checked.hand.take();
     let tried = hand
         .as_ref()
-        .map(|hand| trial::on_ball(hand, options.ball, common.seed))
+        .map(|hand| {
+            let tips = options.contact.unwrap_or_else(|| hand.tip_model());
+            checked.findings.extend(two_fingers(hand, tips, &files));
+            trial::on_ball(hand, options.ball, tips, common.seed)
+        })
         .transpose()?;
     if let (Some(hand), Some(tried)) = (&hand, &tried) {
-        checked.findings.extend(no_grasp(hand, tried, &files));
+        let tips = options.contact.unwrap_or_else(|| hand.tip_model());
+        checked.findings.extend(no_grasp(hand, tried, tips, &files));
     }
     let page = options.output.clone().unwrap_or_else(|| {
         PathBuf::from("out")
@@ -81,15 +86,47 @@ pub(crate) fn run(options: &HandCheckOptions, common: &Common) -> Result<(), Fai
     verdict(&checked, &files)
 }
 
+/// What two fingers need to hold anything.
+fn two_fingers(hand: &Hand, tips: TipModel, files: &HandOptions) -> Option<Finding> {
+    if hand.fingers().len() > 2 {
+        return None;
+    }
+    let (severity, text) = match tips {
+        TipModel::Point => (
+            "warning",
+            "two hard point contacts can never resist a torque about the line between them, whatever the friction; take soft fingers, --contact soft:RADIUS".to_owned(),
+        ),
+        TipModel::Soft { radius } if !hand.has_pad_radius() => (
+            "warning",
+            format!(
+                "two hard point contacts could never hold, so the tips are taken for soft fingers of {:.0} mm radius; write the radius of their pads into the TOML, pad_radius_m = …, or give --contact soft:RADIUS",
+                1e3 * radius
+            ),
+        ),
+        TipModel::Soft { radius } | TipModel::Patch { radius } => (
+            "note",
+            format!(
+                "the two tips touch with pads of {:.1} mm radius: two hard point contacts could never hold",
+                1e3 * radius
+            ),
+        ),
+    };
+    Some(Finding {
+        severity,
+        place: spec_path(files).display().to_string(),
+        text,
+    })
+}
+
 /// A hand that cannot grasp a ball is worth a word.
-fn no_grasp(hand: &Hand, tried: &Trial, files: &HandOptions) -> Option<Finding> {
+fn no_grasp(hand: &Hand, tried: &Trial, tips: TipModel, files: &HandOptions) -> Option<Finding> {
     (tried.outcomes.stable == 0).then(|| Finding {
         severity: "warning",
         place: spec_path(files).display().to_string(),
         text: format!(
             "no pose gives a stable grasp of a ball of {:.0} mm: {}; try another --ball",
             1e3 * tried.diameter,
-            why_none(&tried.outcomes, hand)
+            why_none(&tried.outcomes, hand, tips)
         ),
     })
 }

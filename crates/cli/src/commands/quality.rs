@@ -6,16 +6,15 @@ mod grasps;
 use std::path::Path;
 use std::time::Instant;
 
-use grasp::{
-    CentreRule, ContactModel, Convention, Epsilon, Grasp, GraspModel, TangentRule, Workspace,
-};
+use grasp::{CentreRule, Convention, Epsilon, Grasp, GraspModel, TangentRule, Workspace};
+use hand::TipModel;
 use moduli::Metrics;
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
 use serde::Serialize;
 
 use self::certificates::CertificateLine;
-use crate::args::{Common, ContactOption, Metric, QualityOptions};
+use crate::args::{Common, Metric, QualityOptions};
 use crate::failure::Failure;
 use crate::{input, output};
 
@@ -57,6 +56,7 @@ pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failu
     let asked = options.convention.convention.as_ref().map(|_| &named);
     let set = grasps::read_grasps(&options.grasps, asked)?;
     let (grasps, convention) = (set.grasps, convention(options, named, set.rule)?);
+    let tips = options.contact.unwrap_or(set.tips);
     let start = Instant::now();
     let path = &options.grasps;
     let rows = if options.all {
@@ -68,7 +68,7 @@ pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failu
         measure(&grasps, path, all)?
     } else {
         let one = |grasp: &Grasp, work: &mut Workspace| {
-            let models = vec![contact_model(options, &convention); grasp.contacts.len()];
+            let models = tips.of_contacts(convention.friction, grasp.contacts.len());
             let model = grasp.under(&convention).with_contact_models(&models);
             Ok(measured(&model, options, work)?)
         };
@@ -87,6 +87,10 @@ pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failu
     let mut line = summary(&rows, options.metric, &convention, seconds);
     line.warnings.extend(set.warnings);
     line.warnings.extend(unit_warning(&grasps));
+    if options.all && tips != TipModel::Point {
+        let text = "the file's contacts are soft or patches; --all takes them for hard points";
+        line.warnings.push(text.to_owned());
+    }
     line.warnings.iter().for_each(output::warn);
     if common.json {
         return output::say_json(&QualityLine {
@@ -124,15 +128,6 @@ fn convention(
     // The centre comes with every grasp.
     convention.centre = CentreRule::Given;
     Ok(convention)
-}
-
-fn contact_model(options: &QualityOptions, convention: &Convention) -> ContactModel {
-    let friction = convention.friction;
-    match options.contact {
-        ContactOption::Point => ContactModel::Point { friction },
-        ContactOption::Soft(radius) => ContactModel::soft_disc(friction, radius),
-        ContactOption::Patch(radius) => ContactModel::Patch { friction, radius },
-    }
 }
 
 /// The number of one grasp and the interval that contains it.

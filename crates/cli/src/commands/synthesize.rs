@@ -49,7 +49,11 @@ pub(crate) fn run(options: &SynthesizeOptions, common: &Common) -> Result<(), Fa
     let object = input::object(&options.shape)?;
     let name = object.name();
     let refused = |e: moduli::Error| Failure::refused(format!("synthesis on {name}: {e}"));
-    let measure = object.measure(&convention).map_err(refused)?;
+    let tips = options.contact.unwrap_or_else(|| hand.tip_model());
+    let measure = object
+        .measure(&convention)
+        .map_err(refused)?
+        .with_tips(tips);
     let bar = output::progress(common.quiet, options.poses, "closing the hand");
     let found = measure
         .synthesize_watched(&hand, &poses, &|| bar.inc(1))
@@ -91,7 +95,7 @@ pub(crate) fn run(options: &SynthesizeOptions, common: &Common) -> Result<(), Fa
         return Err(Failure::refused(format!(
             "{name}: 0 grasps of the hand {}: {}",
             hand.name(),
-            why_none(&outcomes, &hand)
+            why_none(&outcomes, &hand, tips)
         )));
     }
     Ok(())

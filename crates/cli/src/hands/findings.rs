@@ -10,7 +10,7 @@ use hand::{
 };
 use serde::Serialize;
 
-use super::{built_in, is_built_in, spec_path, spec_text};
+use super::{built_in, spec_path, spec_text};
 use crate::args::HandOptions;
 use crate::failure::Failure;
 use crate::input;
@@ -58,9 +58,8 @@ pub(crate) fn check(options: &HandOptions) -> Result<Checked, Failure> {
         hand: None,
         findings: Vec::new(),
     };
-    if is_built_in(options)? {
-        checked.hand = Some(built_in()?);
-    } else {
+    checked.hand = built_in(options)?;
+    if checked.hand.is_none() {
         let model = model(options, &mut checked);
         let spec = spec(options, &mut checked);
         if let (Some(model), Some(spec)) = (model, spec) {

@@ -1,6 +1,6 @@
 //! The page of a hand: findings, and pictures in every pre-shape.
 
-use hand::{Hand, Joint, JointKind, Preshape, hand_meshes};
+use hand::{Hand, Joint, JointKind, hand_meshes};
 use nalgebra::{Isometry3, Point3};
 use report::{Block, Item, Mesh, Page, Part, SceneCell, SceneGrid, Section, Surface, Table};
 
@@ -50,7 +50,7 @@ fn pictures(hand: &Hand, trial: &Trial) -> Result<Section, Failure> {
             cells.push(SceneCell { label, items });
         };
         cell("opened", drawn(hand, &preshape.joints, named)?);
-        let half = half_closed(hand, preshape);
+        let half = hand.closed(&preshape.joints, HALF);
         cell("half closed", drawn(hand, &half, false)?);
         match best {
             None => cell("no grasp of the ball", Vec::new()),
@@ -71,25 +71,6 @@ fn pictures(hand: &Hand, trial: &Trial) -> Result<Section, Failure> {
             ..SceneGrid::default()
         })],
     })
-}
-
-/// Closing joints half-way to the ends of the way that their ratios point.
-fn half_closed(hand: &Hand, preshape: &Preshape) -> Vec<f64> {
-    let limits: Vec<(f64, f64)> = hand.model().driven_joints().map(|j| j.limits).collect();
-    let mut joints = preshape.joints.clone();
-    for finger in hand.fingers() {
-        let free = |(driven, ratio): &(usize, f64)| {
-            let (lower, upper) = limits[*driven];
-            let end = if *ratio > 0.0 { upper } else { lower };
-            (end - preshape.joints[*driven]) / ratio
-        };
-        let range = finger.closing.iter().map(free).fold(0.0, f64::max);
-        for &(driven, ratio) in &finger.closing {
-            joints[driven] += HALF * range * ratio;
-        }
-    }
-    hand.model().clamp_to_limits(&mut joints);
-    joints
 }
 
 /// The parts that no finger moves, and one part a finger.
@@ -170,9 +151,14 @@ fn joints(hand: &Hand) -> Section {
         .into();
     headers.extend(hand.preshapes().iter().map(|p| p.name.clone()));
     let row = |(driven, joint): (usize, &Joint)| {
-        let closes = hand.fingers().iter().find_map(|finger| {
-            let (_, ratio) = finger.closing.iter().find(|(d, _)| *d == driven)?;
-            Some(format!("{} × {ratio}", finger.name))
+        let closes = hand.groups().iter().find_map(|group| {
+            let (_, ratio) = group.closing.iter().find(|(d, _)| *d == driven)?;
+            let names = group
+                .fingers
+                .iter()
+                .map(|&f| hand.fingers()[f].name.as_str());
+            let names: Vec<&str> = names.collect();
+            Some(format!("{} × {ratio}", names.join(", ")))
         });
         let mut cells = vec![
             joint.name.clone(),

@@ -1,7 +1,7 @@
 //! A hand tried on a ball: the easiest object there is.
 
 use grasp::Convention;
-use hand::{Hand, OutcomeCounts};
+use hand::{Hand, OutcomeCounts, TipModel};
 use moduli::{Grasp, HandPlacement, Object, Poses, Source};
 use shape::RadialShape;
 
@@ -21,7 +21,12 @@ pub(crate) struct Trial {
 }
 
 /// Closes the hand on a ball from 200 poses, under the paper's convention.
-pub(crate) fn on_ball(hand: &Hand, diameter_mm: f64, seed: u64) -> Result<Trial, Failure> {
+pub(crate) fn on_ball(
+    hand: &Hand,
+    diameter_mm: f64,
+    tips: TipModel,
+    seed: u64,
+) -> Result<Trial, Failure> {
     let diameter = 1e-3 * diameter_mm;
     if !(1e-3..=2.0).contains(&diameter) {
         return Err(Failure::usage(format!(
@@ -33,7 +38,8 @@ pub(crate) fn on_ball(hand: &Hand, diameter_mm: f64, seed: u64) -> Result<Trial,
     let object = Object::from_shape("a ball", ball.clone());
     let measure = object
         .measure(&Convention::paper())
-        .map_err(|e| Failure::other(e.to_string()))?;
+        .map_err(|e| Failure::other(e.to_string()))?
+        .with_tips(tips);
     let poses = Poses {
         count: POSES,
         seed,

@@ -8,10 +8,10 @@ use tempfile::TempDir;
 use crate::common::{fitted, moduli, refused, stdout};
 
 /// Where objects stand in their clouds.
-const CENTRE: [f64; 3] = [1.0, 0.0, 0.2];
+pub(crate) const CENTRE: [f64; 3] = [1.0, 0.0, 0.2];
 
 /// A gripper of two fingers that slide towards each other, with tips from a mesh in a package.
-fn gripper(folder: &Path) {
+pub(crate) fn gripper(folder: &Path) {
     let finger = |side: &str, y: f64| {
         format!(
             r#"<link name="{side}"><collision><origin xyz="0 0 0.06"/><geometry>
@@ -60,9 +60,9 @@ joints = { left_slide = 0.03, right_slide = 0.03 }
     std::fs::write(folder.join("gripper/meshes/tip.obj"), tip).unwrap();
 }
 
-const URDF: &str = "gripper/urdf/gripper.urdf";
+pub(crate) const URDF: &str = "gripper/urdf/gripper.urdf";
 
-fn read(folder: &Path, name: &str) -> Value {
+pub(crate) fn read(folder: &Path, name: &str) -> Value {
     serde_json::from_slice(&std::fs::read(folder.join(name)).unwrap()).unwrap()
 }
 
@@ -244,7 +244,7 @@ fn a_hand_of_ones_own_is_checked_and_used() {
     let page = std::fs::read_to_string(here.join("page.html")).unwrap();
     assert!(page.contains("figure-0-data") && page.contains("left_slide"));
 
-    // Two fingers never close a grasp with point contacts, and the program says so.
+    // Two hard points never hold, and the program says so; soft fingers do.
     fitted(here, "egg", [0.035, 0.030, 0.045], CENTRE);
     let with = [
         "synthesize",
@@ -258,7 +258,21 @@ fn a_hand_of_ones_own_is_checked_and_used() {
         "-o",
         "two",
     ];
-    refused(&moduli(here, &with), 4, &["gripper", "unstable"]);
+    let points = [&with[..], &["--contact", "point"]].concat();
+    let words = [
+        "gripper",
+        "unstable",
+        "never resist a torque",
+        "soft:RADIUS",
+    ];
+    refused(&moduli(here, &points), 4, &words);
+    stdout(&moduli(here, &with));
+    let contact = &read(here, "two/grasps.json")["convention"]["contact"];
+    assert_eq!(
+        contact,
+        &serde_json::json!({"model": "soft", "radius_m": 0.005})
+    );
+    assert!(line.contains("pad_radius_m"), "{line}");
     let whole = [
         "grasp",
         "egg.xyz",
@@ -278,10 +292,17 @@ fn a_hand_of_ones_own_is_checked_and_used() {
         "whole",
     ];
     let said = stdout(&moduli(here, &whole));
-    assert!(said.contains("come without a hand"), "{said}");
+    assert!(
+        said.contains("2 grasps of the library are left out"),
+        "{said}"
+    );
     let file = read(here, "whole/grasps.json");
-    assert!(!file["grasps"].as_array().unwrap().is_empty());
-    assert!(file["grasps"][0]["hand"].is_null());
+    let grasps = file["grasps"].as_array().unwrap();
+    assert!(!grasps.is_empty());
+    for grasp in grasps {
+        assert_eq!(grasp["hand"]["name"], "gripper");
+        assert_eq!(grasp["contacts_m"].as_array().unwrap().len(), 2);
+    }
 }
 
 #[test]
@@ -423,41 +444,4 @@ fn options_of_hands_are_checked() {
         3,
         &["none.urdf", "2 errors"],
     );
-}
-
-#[test]
-fn unknown_names_are_answered_with_the_known_ones() {
-    let folder = TempDir::new().unwrap();
-    for arguments in [["grasp", "--hand", "shadow"], ["hand", "check", "shadow"]] {
-        let output = moduli(folder.path(), &arguments);
-        refused(&output, 2, &["no hand is named `shadow`", "sdh", "URDF"]);
-    }
-}
-
-/// The tips reach past a ball that a hull of the base's mesh fills.
-#[test]
-fn a_hull_that_fills_the_hand_is_linked_to_what_it_does() {
-    let folder = TempDir::new().unwrap();
-    let here = folder.path();
-    gripper(here);
-    let urdf = std::fs::read_to_string(here.join(URDF)).unwrap();
-    let palm = r#"<box size="0.04 0.3 0.02"/>"#;
-    let mesh = r#"<mesh filename="package://gripper/meshes/u.obj"/>"#;
-    std::fs::write(here.join(URDF), urdf.replace(palm, mesh)).unwrap();
-    let corner = |k: usize| {
-        let side = |bit: usize, low: f64, high: f64| if k >> bit & 1 == 0 { low } else { high };
-        format!(
-            "v {} {} {}\n",
-            side(0, -0.05, 0.05),
-            side(1, -0.15, 0.15),
-            side(2, -0.01, 0.1)
-        )
-    };
-    let u: String = (0..8).map(corner).collect();
-    std::fs::write(here.join("gripper/meshes/u.obj"), u).unwrap();
-    // The package is found without being told where it is.
-    let output = moduli(here, &["hand", "check", URDF, "-o", "p.html"]);
-    let said = stdout(&output);
-    let words = "the convex hull of the mesh 'package://gripper/meshes/u.obj' stands in for 'base' and fills its hollows";
-    assert!(said.contains(words), "{said}");
 }

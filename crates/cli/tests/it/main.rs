@@ -4,6 +4,7 @@ mod ascend_transfer;
 mod commands;
 mod common;
 mod formats;
+mod grippers;
 mod hands;
 mod library;
 mod metrics;

@@ -1,42 +1,42 @@
-//! Closing a finger past its tip: every joint goes on until a link that it moves touches.
+//! Closing fingers past their tips: every joint goes on until a link that it moves touches.
 
 use super::{ClosedHand, ClosingRules, LEAST_STEP, Rejection};
 use crate::collision::{CollisionObject, Gap, Precision};
-use crate::hand::{Finger, Hand};
+use crate::hand::{FingerGroup, Hand};
 
-/// A finger's closing joints on their way.
+/// A group's closing joints on their way.
 struct Wrapping<'a> {
     object: &'a CollisionObject<'a>,
     hand: &'a Hand,
-    finger: &'a Finger,
+    group: &'a FingerGroup,
     rules: &'a ClosingRules,
     /// Closing joints that still move.
     active: Vec<bool>,
 }
 
-/// Closes a finger joint by joint, by conservative advancement as with tips alone.
+/// Closes a group joint by joint, by conservative advancement as with tips alone.
 ///
 /// A joint stops at its limit and when any link that it moves has come within the tip gap; a
-/// joint only ever closes. Errors: the finger starts in the object, or none of its links touches.
-pub(super) fn wrap_finger(
+/// joint only ever closes. Errors: a finger starts in the object, or
+/// none of its links touches.
+pub(super) fn wrap_group(
     object: &CollisionObject<'_>,
     hand: &Hand,
-    index: usize,
+    group: &FingerGroup,
     rules: &ClosingRules,
     state: &mut ClosedHand,
 ) -> Result<(), Rejection> {
-    let finger = &hand.fingers[index];
     let mut wrapping = Wrapping {
         object,
         hand,
-        finger,
+        group,
         rules,
-        active: vec![true; finger.closing.len()],
+        active: vec![true; group.closing.len()],
     };
     loop {
-        let step = wrapping
-            .free_step(state)
-            .ok_or(Rejection::StartsInObject { finger: index })?;
+        let step = wrapping.free_step(state).ok_or(Rejection::StartsInObject {
+            finger: group.fingers[0],
+        })?;
         wrapping.stop_at_limits(state);
         if !wrapping.active.contains(&true) {
             break;
@@ -46,16 +46,20 @@ pub(super) fn wrap_finger(
         }
     }
     let before = state.touching.len();
-    for &link in &finger.moving_links {
+    for &link in &group.moving_links {
         let gap = wrapping.gap(link, state);
         if !hand.shapes[link].is_empty() && wrapping.has_arrived(&gap) {
             state.touching.push(link);
         }
     }
-    if state.touching.len() == before {
-        return Err(Rejection::TipDidNotArrive { finger: index });
+    let touches = |finger: usize| {
+        let links = &hand.fingers[finger].moving_links;
+        state.touching[before..].iter().any(|l| links.contains(l))
+    };
+    match group.fingers.iter().find(|f| !touches(**f)) {
+        Some(&finger) => Err(Rejection::TipDidNotArrive { finger }),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 impl Wrapping<'_> {
@@ -65,7 +69,7 @@ impl Wrapping<'_> {
         // A link is brought to half of the gap, between touching and not having arrived.
         let aim = 0.5 * self.rules.tip_gap;
         let mut step = f64::INFINITY;
-        for (k, &link) in self.finger.moving_links.iter().enumerate() {
+        for (k, &link) in self.group.moving_links.iter().enumerate() {
             if self.hand.shapes[link].is_empty() || self.speed(k) <= 0.0 {
                 continue;
             }
@@ -75,7 +79,7 @@ impl Wrapping<'_> {
             }
             let free = (gap.lower - aim) / self.speed(k);
             if self.has_arrived(&gap) || !(free > LEAST_STEP) {
-                for (active, speed) in self.active.iter_mut().zip(&self.finger.joint_speeds[k]) {
+                for (active, speed) in self.active.iter_mut().zip(&self.group.joint_speeds[k]) {
                     *active &= *speed <= 0.0;
                 }
             } else {
@@ -102,26 +106,26 @@ impl Wrapping<'_> {
 
     /// Bound on the speed of a moving link under the joints that still move.
     fn speed(&self, link: usize) -> f64 {
-        let parts = self.finger.joint_speeds[link].iter().zip(&self.active);
+        let parts = self.group.joint_speeds[link].iter().zip(&self.active);
         parts.filter(|(_, active)| **active).map(|(s, _)| s).sum()
     }
 
     fn limit(&self, joint: usize) -> f64 {
-        let (driven, ratio) = self.finger.closing[joint];
+        let (driven, ratio) = self.group.closing[joint];
         let (lower, upper) = self.hand.model.joints[self.hand.model.driven[driven]].limits;
         if ratio > 0.0 { upper } else { lower }
     }
 
     fn stop_at_limits(&mut self, state: &ClosedHand) {
         for joint in 0..self.active.len() {
-            let (driven, ratio) = self.finger.closing[joint];
+            let (driven, ratio) = self.group.closing[joint];
             let left = (self.limit(joint) - state.joints[driven]) / ratio;
             self.active[joint] &= left > LEAST_STEP;
         }
     }
 
     fn advance(&self, step: f64, state: &mut ClosedHand) {
-        for (joint, &(driven, ratio)) in self.finger.closing.iter().enumerate() {
+        for (joint, &(driven, ratio)) in self.group.closing.iter().enumerate() {
             if self.active[joint] {
                 let left = (self.limit(joint) - state.joints[driven]) / ratio;
                 state.joints[driven] += ratio * step.min(left);
@@ -129,7 +133,7 @@ impl Wrapping<'_> {
         }
         self.hand.model.update_links(
             &state.joints,
-            self.finger.moving_links.iter().copied(),
+            self.group.moving_links.iter().copied(),
             &mut state.object_from_links,
         );
         state.steps += 1;

@@ -1,8 +1,9 @@
 //! Everything that is wrong with a spec, where [`Hand::new`] stops at the first thing.
 
+use super::groups::groups;
 use super::resolve::{
-    approach, bad_number, find_driven, find_link, finger, fingers, link_shapes, palm, preshapes,
-    standoff,
+    approach, bad_number, find_driven, find_link, finger, fingers, least_fingers, link_shapes,
+    pad_radius, palm, preshapes, separate, standoff,
 };
 use super::{Hand, HandError};
 use crate::collision::LinkShape;
@@ -19,8 +20,10 @@ impl Hand {
         for name in spec.self_distance.exempt_pairs.iter().flatten() {
             found.extend(find_link(model, "exempt_pairs", name).err());
         }
+        found.extend(least_fingers(spec).err());
+        found.extend(pad_radius(spec).err());
         match link_shapes(model) {
-            Ok(shapes) => found.extend(finger_problems(model, &shapes, &spec.finger)),
+            Ok(shapes) => found.extend(finger_problems(model, &shapes, spec)),
             Err(broken) => found.push(broken),
         }
         found.extend(preshape_problems(model, &spec.preshape));
@@ -28,13 +31,9 @@ impl Hand {
     }
 }
 
-fn finger_problems(
-    model: &HandModel,
-    shapes: &[LinkShape],
-    specs: &[FingerSpec],
-) -> Vec<HandError> {
+fn finger_problems(model: &HandModel, shapes: &[LinkShape], spec: &HandSpec) -> Vec<HandError> {
     let mut found = Vec::new();
-    for spec in specs {
+    for spec in &spec.finger {
         let names = finger_names(model, spec);
         if names.is_empty() {
             found.extend(finger(model, shapes, spec).err());
@@ -42,7 +41,11 @@ fn finger_problems(
         found.extend(names);
     }
     if found.is_empty() {
-        found.extend(fingers(model, shapes, specs).err());
+        let together = fingers(model, shapes, &spec.finger).and_then(|mut fingers| {
+            groups(model, shapes, spec, &mut fingers)?;
+            separate(model, &fingers)
+        });
+        found.extend(together.err());
     }
     found
 }

@@ -81,18 +81,22 @@ pub(super) fn fingers(
         .map(|spec| finger(model, shapes, spec))
         .collect::<Result<Vec<_>, _>>()?;
     for (k, second) in fingers.iter().enumerate() {
+        if let Some(first) = fingers[..k].iter().find(|f| f.name == second.name) {
+            return Err(HandError::Duplicate {
+                what: "fingers",
+                name: first.name.clone(),
+            });
+        }
+    }
+    Ok(fingers)
+}
+
+/// No link moves with two fingers, once the links of fingers that close together are divided.
+pub(super) fn separate(model: &HandModel, fingers: &[Finger]) -> Result<(), HandError> {
+    for (k, second) in fingers.iter().enumerate() {
         for first in &fingers[..k] {
-            if first.name == second.name {
-                return Err(HandError::Duplicate {
-                    what: "fingers",
-                    name: first.name.clone(),
-                });
-            }
-            let shared = first
-                .moving_links
-                .iter()
-                .find(|l| second.moving_links.contains(l));
-            if let Some(&link) = shared {
+            let both = |l: &&usize| second.moving_links.contains(l);
+            if let Some(&link) = first.moving_links.iter().find(both) {
                 return Err(HandError::SharedLink {
                     first: first.name.clone(),
                     second: second.name.clone(),
@@ -101,7 +105,37 @@ pub(super) fn fingers(
             }
         }
     }
-    Ok(fingers)
+    for finger in fingers {
+        for link in &finger.tip_links {
+            if !finger.moving_links.contains(link) {
+                return Err(HandError::IdleTip {
+                    finger: finger.name.clone(),
+                    link: model.links[*link].name.clone(),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn least_fingers(spec: &HandSpec) -> Result<usize, HandError> {
+    let all = spec.finger.len();
+    let least = spec.least_fingers.unwrap_or(all);
+    if (2..=all).contains(&least) {
+        return Ok(least);
+    }
+    let wanted = "between 2 and the number of fingers";
+    Err(bad_number("least_fingers", least as f64, wanted))
+}
+
+pub(super) fn pad_radius(spec: &HandSpec) -> Result<Option<f64>, HandError> {
+    match spec.pad_radius_m {
+        Some(radius) if !(radius > 0.0 && radius <= 0.1) => {
+            let wanted = "a radius in metres, more than 0 and at most 0.1";
+            Err(bad_number("pad_radius_m", radius, wanted))
+        }
+        radius => Ok(radius),
+    }
 }
 
 fn at_least(place: &str, what: &'static str, count: usize, least: usize) -> Result<(), HandError> {
@@ -136,7 +170,7 @@ pub(super) fn finger(
         }
         closing.push((driven, ratio));
     }
-    let (moving_links, speed_bounds, joint_speeds) = moving_links(model, shapes, &closing);
+    let moving_links = Motion::of(model, shapes, &closing).links;
     for (&link, name) in tip_links.iter().zip(&spec.tips) {
         let (finger, link_name) = (spec.name.clone(), name.clone());
         if shapes[link].is_empty() {
@@ -157,8 +191,6 @@ pub(super) fn finger(
         tip_links,
         closing,
         moving_links,
-        speed_bounds,
-        joint_speeds,
     })
 }
 
@@ -182,53 +214,63 @@ pub(super) fn find_driven(model: &HandModel, place: &str, name: &str) -> Result<
 
 /// Links that closing moves, and bounds on the speed of their points, in all and by each of the
 /// closing joints.
-///
-/// A point of link L moves at most Σ_J |rate_J| · reach(J, L), reach being the length of
-/// the chain from the axis of J to the farthest point of L (1 for a sliding joint).
-fn moving_links(
-    model: &HandModel,
-    shapes: &[LinkShape],
-    closing: &[(usize, f64)],
-) -> (Vec<usize>, Vec<f64>, Vec<Vec<f64>>) {
-    // Which closing joint moves a joint, and how fast.
-    let part_of = |joint: usize| {
-        let (driven, factor) = match model.joints[joint].drive {
-            Drive::Fixed => return None,
-            Drive::Driven(driven) => (driven, 1.0),
-            Drive::Mimic {
-                driven, multiplier, ..
-            } => (driven, multiplier),
+pub(super) struct Motion {
+    /// The links, parents first.
+    pub(super) links: Vec<usize>,
+    /// Metres per unit of closing, of each link.
+    pub(super) speeds: Vec<f64>,
+    /// The share of each closing joint.
+    pub(super) by_joint: Vec<Vec<f64>>,
+}
+
+impl Motion {
+    /// A point of link L moves at most Σ_J |rate_J| · reach(J, L), reach being the length of
+    /// the chain from the axis of J to the farthest point of L (1 for a sliding joint).
+    pub(super) fn of(model: &HandModel, shapes: &[LinkShape], closing: &[(usize, f64)]) -> Self {
+        // Which closing joint moves a joint, and how fast.
+        let part_of = |joint: usize| {
+            let (driven, factor) = match model.joints[joint].drive {
+                Drive::Fixed => return None,
+                Drive::Driven(driven) => (driven, 1.0),
+                Drive::Mimic {
+                    driven, multiplier, ..
+                } => (driven, multiplier),
+            };
+            let part = closing.iter().position(|c| c.0 == driven)?;
+            Some((part, factor * closing[part].1)).filter(|(_, rate)| *rate != 0.0)
         };
-        let part = closing.iter().position(|c| c.0 == driven)?;
-        Some((part, factor * closing[part].1)).filter(|(_, rate)| *rate != 0.0)
-    };
-    let mut links = Vec::new();
-    let mut speeds = Vec::new();
-    let mut by_joint = Vec::new();
-    for (link, shape) in shapes.iter().enumerate() {
-        let mut reach = shape.reach();
-        let mut parts = vec![0.0; closing.len()];
-        // A frame on the axis turns although no point of it moves, and so do its children.
-        let mut moves = false;
-        for joint in model.path_to_root(link) {
-            if let Some((part, rate)) = part_of(joint) {
-                moves = true;
-                let slides = model.joints[joint].kind == JointKind::Prismatic;
-                parts[part] += rate.abs() * if slides { 1.0 } else { reach };
+        let mut links = Vec::new();
+        let mut speeds = Vec::new();
+        let mut by_joint = Vec::new();
+        for (link, shape) in shapes.iter().enumerate() {
+            let mut reach = shape.reach();
+            let mut parts = vec![0.0; closing.len()];
+            // A frame on the axis turns although no point of it moves, and so do its children.
+            let mut moves = false;
+            for joint in model.path_to_root(link) {
+                if let Some((part, rate)) = part_of(joint) {
+                    moves = true;
+                    let slides = model.joints[joint].kind == JointKind::Prismatic;
+                    parts[part] += rate.abs() * if slides { 1.0 } else { reach };
+                }
+                let joint = &model.joints[joint];
+                if joint.kind == JointKind::Prismatic {
+                    reach += joint.limits.0.abs().max(joint.limits.1.abs());
+                }
+                reach += joint.parent_from_joint.translation.vector.norm();
             }
-            let joint = &model.joints[joint];
-            if joint.kind == JointKind::Prismatic {
-                reach += joint.limits.0.abs().max(joint.limits.1.abs());
+            if moves {
+                links.push(link);
+                speeds.push(parts.iter().sum());
+                by_joint.push(parts);
             }
-            reach += joint.parent_from_joint.translation.vector.norm();
         }
-        if moves {
-            links.push(link);
-            speeds.push(parts.iter().sum());
-            by_joint.push(parts);
+        Motion {
+            links,
+            speeds,
+            by_joint,
         }
     }
-    (links, speeds, by_joint)
 }
 
 pub(super) fn preshapes(

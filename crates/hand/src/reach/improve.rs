@@ -14,6 +14,7 @@ use sph::direction::{log, retract, tangent_frame};
 
 use super::problem::{Task, state};
 use super::{ReachParams, Reached, Reacher};
+use crate::tip_model::TipModel;
 
 /// How a hand's grasp is improved.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +27,8 @@ pub struct ImproveParams {
     pub convention: Convention,
     /// The point about which torques are taken, object frame, metres.
     pub centre: Point3<f64>,
+    /// What the contacts transmit, apart from friction.
+    pub tips: TipModel,
 }
 
 /// A grasp that the hand makes.
@@ -60,7 +63,11 @@ impl Reacher<'_> {
         rng: &mut R,
     ) -> Result<Improvement, QualityError> {
         let measure = |contacts: &[Contact]| {
+            let models = params
+                .tips
+                .of_contacts(params.convention.friction, contacts.len());
             let model = GraspModel::new(contacts, &params.centre, &params.convention);
+            let model = model.with_contact_models(&models);
             epsilon(&model, &mut Workspace::new()).map(|found| found.value(&params.convention))
         };
         let start_quality = measure(&near.contacts)?;

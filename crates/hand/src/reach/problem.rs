@@ -256,14 +256,10 @@ impl<'a> Problem<'a> {
         let hand = self.hand;
         let rules = &task.params.rules;
         let object_from_palm = pose(x);
-        let mut open = x.as_slice()[6..].to_vec();
-        for &(driven, ratio) in hand.fingers.iter().flat_map(|f| &f.closing) {
-            open[driven] -= task.params.opening * ratio;
-        }
-        hand.model.clamp_to_limits(&mut open);
+        let open = hand.opened(&x.as_slice()[6..], task.params.opening);
         let closed = close_hand(self.object, hand, &object_from_palm, &open, rules).ok()?;
         let mut reached = Reached {
-            object_from_palm,
+            object_from_palm: closed.object_from_links[0],
             joints: closed.joints,
             finger_of_contact: task.fingers.to_vec(),
             contacts: Vec::with_capacity(task.fingers.len()),

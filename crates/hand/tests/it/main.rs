@@ -3,6 +3,7 @@
 mod check;
 mod closing;
 mod common;
+mod grippers;
 mod hostile_urdf;
 mod kinematics;
 mod reach;

@@ -93,6 +93,7 @@ fn an_improved_hand_keeps_the_rules_and_never_loses_quality() {
         ..ReachParams::default()
     };
     let improve = ImproveParams {
+        tips: hand.tip_model(),
         trials: 25,
         spread: 4e-3,
         convention: setup.convention.clone(),

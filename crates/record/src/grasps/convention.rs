@@ -32,6 +32,24 @@ pub struct ConventionRecord {
     pub tangent: TangentRecord,
     /// A grasp is stable from this quality on; version 2.
     pub stable_above: Option<f64>,
+    /// What a contact transmits beside friction; `None` for hard points. Version 2.
+    pub contact: Option<ContactModelRecord>,
+}
+
+/// A contact with a size.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "model", rename_all = "snake_case")]
+pub enum ContactModelRecord {
+    /// A soft finger: a disc under even pressure.
+    Soft {
+        /// Radius of the disc.
+        radius_m: f64,
+    },
+    /// A stiff square pad.
+    Patch {
+        /// Distance of each corner from the contact.
+        radius_m: f64,
+    },
 }
 
 /// How long the edges of a friction cone are.
@@ -97,6 +115,8 @@ struct Keys {
     tangent_axis: Option<[f64; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     stable_above: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    contact: Option<ContactModelRecord>,
 }
 
 /// The first value is that of files from before the key.
@@ -135,6 +155,7 @@ impl TryFrom<Keys> for ConventionRecord {
             not_closed: keys.not_closed,
             tangent,
             stable_above: keys.stable_above,
+            contact: keys.contact,
         })
     }
 }
@@ -161,6 +182,7 @@ impl From<ConventionRecord> for Keys {
             tangent,
             tangent_axis,
             stable_above: record.stable_above,
+            contact: record.contact,
         }
     }
 }

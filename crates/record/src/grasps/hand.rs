@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// In JSON the joints stand twice: `joints` {name: {value, unit}} says the unit of each value;
 /// `joints_rad` {name: value} is the older key, which holds metres for prismatic joints. The same
-/// holds for `pregrasp_joints` and `pregrasp_joints_rad`. A file with the older keys alone is read,
+/// holds for `pregrasp_joints` and `pregrasp_joints_rad`. The older keys hold the driven joints alone. A file with the older keys alone is read,
 /// and its joints have no unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "Keys", into = "Keys")]
@@ -20,7 +20,7 @@ pub struct HandRecord {
     pub palm_link: String,
     /// Pose of the palm in the frame of the cloud; the key is `object_from_palm`.
     pub cloud_from_palm: PoseRecord,
-    /// The joints in the grasp, by name.
+    /// The joints in the grasp, by name: the driven ones and those that follow them.
     pub joints: BTreeMap<String, JointRecord>,
     /// The same joints before the fingers closed; empty in older files.
     pub pregrasp_joints: BTreeMap<String, JointRecord>,
@@ -52,12 +52,15 @@ pub struct ExecutionRecord {
 }
 
 /// The value of a joint.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointRecord {
     /// The value in its unit.
     pub value: f64,
     /// The unit; `null` for a joint of an older file, which does not say whether it slides.
     pub unit: Option<JointUnit>,
+    /// The driven joint that this one follows (a mimic joint of the URDF); absent where it is driven.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub follows: Option<String>,
 }
 
 /// Unit of a joint's value.
@@ -128,13 +131,21 @@ fn with_units(
     if !joints.is_empty() {
         return joints;
     }
-    let bare = |(name, value)| (name, JointRecord { value, unit: None });
+    let bare = |(name, value)| {
+        let joint = JointRecord {
+            value,
+            unit: None,
+            follows: None,
+        };
+        (name, joint)
+    };
     older.into_iter().map(bare).collect()
 }
 
 fn values(joints: &BTreeMap<String, JointRecord>) -> BTreeMap<String, f64> {
     let value = |(name, joint): (&String, &JointRecord)| (name.clone(), joint.value);
-    joints.iter().map(value).collect()
+    let driven = joints.iter().filter(|(_, joint)| joint.follows.is_none());
+    driven.map(value).collect()
 }
 
 impl From<Keys> for HandRecord {

@@ -32,6 +32,7 @@ fn convention() -> ConventionRecord {
         not_closed: -1.0,
         tangent: TangentRecord::Projected([1.2, 2.3, 3.4]),
         stable_above: None,
+        contact: None,
     }
 }
 
@@ -177,6 +178,7 @@ fn joints_have_a_unit_each_and_the_older_keys_stay() {
     let bare = JointRecord {
         value: 0.0205,
         unit: None,
+        follows: None,
     };
     assert_eq!(hand.joints["slide"], bare);
     hand.joints.get_mut("slide").unwrap().unit = Some(JointUnit::Metres);

@@ -14,6 +14,7 @@ fn with_hand(quality: f64) -> GraspRecord {
         let joint = JointRecord {
             value,
             unit: Some(unit),
+            follows: None,
         };
         BTreeMap::from([(name.to_owned(), joint)])
     };

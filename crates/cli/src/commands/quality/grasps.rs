@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use grasp::{CentreRule, Contact, Convention, Grasp};
+use hand::TipModel;
 use nalgebra::{Point3, UnitVector3, Vector3};
 use record::GraspsFile;
 use run::npy::Table;
@@ -20,6 +21,8 @@ pub(super) struct GraspSet {
     pub(super) grasps: Vec<Grasp>,
     /// The convention that the file names.
     pub(super) rule: Option<Convention>,
+    /// What its contacts transmit.
+    pub(super) tips: TipModel,
     pub(super) warnings: Vec<String>,
 }
 
@@ -32,7 +35,7 @@ pub(super) fn read_grasps(path: &Path, asked: Option<&Convention>) -> Result<Gra
     let bytes = input::read(path)?;
     let start = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
     let mut reader = Reader { path, adjusted: 0 };
-    let mut rule = None;
+    let (mut rule, mut tips) = (None, TipModel::Point);
     let named_json = path.extension().is_some_and(|e| e == "json");
     let grasps = if bytes.starts_with(b"\x93NUMPY") {
         let table = Table::from_npy_flattened(&bytes).map_err(|e| Failure::input(path, e))?;
@@ -41,8 +44,8 @@ pub(super) fn read_grasps(path: &Path, asked: Option<&Convention>) -> Result<Gra
         rows.map(|(row, cells)| reader.grasp_of_row(&format!("row {row}"), cells))
             .collect::<Result<_, _>>()?
     } else if named_json || start.trim_ascii_start().starts_with(b"{") {
-        let (grasps, convention) = reader.read_json(start, asked)?;
-        rule = Some(convention);
+        let (grasps, convention, contacts) = reader.read_json(start, asked)?;
+        (rule, tips) = (Some(convention), contacts);
         grasps
     } else {
         let rows = rows_of_text(path, start)?;
@@ -56,6 +59,7 @@ pub(super) fn read_grasps(path: &Path, asked: Option<&Convention>) -> Result<Gra
     Ok(GraspSet {
         grasps,
         rule,
+        tips,
         warnings: reader.warnings(),
     })
 }
@@ -118,12 +122,12 @@ impl Reader<'_> {
             .map_err(|e| Failure::input(self.path, format!("{place}: {e}")))
     }
 
-    /// The grasps of a `grasps.json`, and its convention.
+    /// The grasps of a `grasps.json`, its convention and what its contacts transmit.
     fn read_json(
         &mut self,
         bytes: &[u8],
         asked: Option<&Convention>,
-    ) -> Result<(Vec<Grasp>, Convention), Failure> {
+    ) -> Result<(Vec<Grasp>, Convention, TipModel), Failure> {
         let path = self.path;
         let file = GraspsFile::from_json(bytes).map_err(|e| Failure::input(path, e))?;
         let convention = moduli::records::convention(&file.convention).map_err(|e| {
@@ -146,7 +150,8 @@ impl Reader<'_> {
             let grasp = Grasp::new(contacts, centre);
             grasps.push(grasp.map_err(|e| Failure::input(path, format!("grasp {i}: {e}")))?);
         }
-        Ok((grasps, convention))
+        let tips = moduli::records::tip_model(file.convention.contact);
+        Ok((grasps, convention, tips))
     }
 }
 

@@ -161,6 +161,7 @@ pub fn paper_params(hand: &Hand, poses: usize) -> hand::SynthesisParams {
         rules: hand::ClosingRules::default(),
         convention: grasp::Convention::named("paper").unwrap(),
         centre: nalgebra::Point3::origin(),
+        tips: hand.tip_model(),
         least_quality: 0.01,
     }
 }

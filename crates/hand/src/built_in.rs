@@ -1,4 +1,4 @@
-//! The hand that comes with the program: a simplified Schunk SDH.
+//! The hands that come with the program: a simplified Schunk SDH and two grippers.
 
 use thiserror::Error;
 
@@ -10,6 +10,17 @@ use crate::urdf::{UrdfError, load_urdf};
 pub const SDH_URDF: &str = fixtures::SDH_URDF;
 /// The spec of the built-in hand.
 pub const SDH_SPEC: &str = fixtures::SDH_SPEC;
+
+/// Names, URDFs and specs.
+const BUILT_IN: [(&str, &str, &str); 3] = [
+    ("sdh", SDH_URDF, SDH_SPEC),
+    ("panda", fixtures::PANDA_URDF, fixtures::PANDA_SPEC),
+    (
+        "robotiq_2f85",
+        fixtures::ROBOTIQ_2F85_URDF,
+        fixtures::ROBOTIQ_2F85_SPEC,
+    ),
+];
 
 /// Why a hand could not be had from its two texts.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -40,6 +51,22 @@ impl Hand {
     pub fn from_texts(urdf: &str, spec: &str) -> Result<Self, LoadError> {
         Ok(Self::new(load_urdf(urdf)?, &HandSpec::from_toml(spec)?)?)
     }
+
+    /// The hand that moduli carries under a name, one of [`Hand::BUILT_IN`].
+    ///
+    /// ```
+    /// let gripper = hand::Hand::built_in("panda").unwrap()?;
+    /// assert_eq!(gripper.groups().len(), 1);
+    /// assert!(hand::Hand::built_in("claw").is_none());
+    /// # Ok::<(), hand::LoadError>(())
+    /// ```
+    pub fn built_in(name: &str) -> Option<Result<Self, LoadError>> {
+        let (_, urdf, spec) = BUILT_IN.iter().find(|(known, ..)| *known == name)?;
+        Some(Self::from_texts(urdf, spec))
+    }
+
+    /// The names of the hands that moduli carries.
+    pub const BUILT_IN: [&str; 3] = [BUILT_IN[0].0, BUILT_IN[1].0, BUILT_IN[2].0];
 
     /// The Schunk SDH that moduli carries, see [`schunk_sdh`].
     ///

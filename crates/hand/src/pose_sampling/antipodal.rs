@@ -1,0 +1,204 @@
+//! Pairs of points that two jaws can press from opposite sides, and the poses about them.
+
+use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, UnitQuaternion, UnitVector3, Vector3};
+use rand::{Rng, RngExt};
+use shape::{RadialField, RadialShape, Surface};
+use sph::Direction;
+use sph::direction::tangent_frame;
+
+use super::obstacles::Obstacles;
+use crate::hand::{Hand, Jaws};
+
+/// Pairs tried for one pose.
+const TRIES: usize = 100;
+/// Approaches tried for one pair.
+const TURNS: usize = 6;
+/// What the jaws are wider than the pair, metres: both tips start clear of the surface.
+const SPARE: f64 = 2e-3;
+/// What is left between the surface and links that may not touch, metres.
+const CLEARANCE: f64 = 6e-3;
+/// Points of the surface with which the hand is compared.
+const POINTS: usize = 400;
+/// Moves of the middle of the jaws along the approach, metres, both ways.
+const SHIFT: f64 = 6e-3;
+/// Steps along a line, as a share of the object's radius, before the crossing is bisected.
+const STEP: f64 = 0.05;
+const BISECTIONS: usize = 20;
+
+/// A surface on which pairs are looked for.
+pub(super) struct Pairs<'a> {
+    field: RadialField,
+    points: Vec<Point3<f64>>,
+    /// On their way from each pre-shape that poses are drawn from, the widest first.
+    jaws: Vec<Vec<Station<'a>>>,
+    cone: f64,
+    least_height: f64,
+    radius: f64,
+}
+
+/// The jaws somewhere on their way.
+struct Station<'a> {
+    jaws: Jaws,
+    obstacles: Obstacles<'a>,
+}
+
+impl<'a> Pairs<'a> {
+    pub(super) fn new(
+        surface: &RadialShape,
+        hand: &'a Hand,
+        preshapes: &[usize],
+        cone: f64,
+        least_height: f64,
+    ) -> Self {
+        let field = RadialField::new(surface.clone());
+        let directions = sph::direction::even_directions(POINTS);
+        Pairs {
+            radius: surface.radius_bounds().1,
+            points: directions.iter().map(|d| field.point(d)).collect(),
+            field,
+            jaws: preshapes.iter().map(|&p| stations(hand, p)).collect(),
+            cone,
+            least_height,
+        }
+    }
+
+    /// A pose whose jaws are about an antipodal pair, and which pre-shape's they are.
+    pub(super) fn draw<R: Rng + ?Sized>(
+        &self,
+        hand: &Hand,
+        rng: &mut R,
+    ) -> Option<(usize, Isometry3<f64>)> {
+        let which = rng.random_range(0..self.jaws.len());
+        let way = &self.jaws[which];
+        let open = way.first()?;
+        let widest = open.jaws.opening - SPARE;
+        for _ in 0..TRIES {
+            let Some((first, second)) = self.pair(widest, rng) else {
+                continue;
+            };
+            // Where the tips will be when they are as far apart as the pair.
+            let width = (first - second).norm();
+            let wider = way.iter().rev().find(|s| s.jaws.opening >= width);
+            let closed = wider.unwrap_or(open);
+            for _ in 0..TURNS {
+                let roll = rng.random_range(0.0..std::f64::consts::TAU);
+                let shift = rng.random_range(-SHIFT..=SHIFT);
+                let pose = self.about(hand, &closed.jaws, (&first, &second), roll, shift);
+                let clear = |pose: &Isometry3<f64>| {
+                    let seen = pose.inverse();
+                    let meets = |s: &Station<'_>| s.obstacles.meet(&seen, &self.points);
+                    !meets(closed) && !meets(open)
+                };
+                if let Some(pose) = pose.filter(clear) {
+                    return Some((which, pose));
+                }
+            }
+        }
+        None
+    }
+
+    /// Two points not farther apart than `widest`, the line between them in both friction cones.
+    fn pair<R: Rng + ?Sized>(
+        &self,
+        widest: f64,
+        rng: &mut R,
+    ) -> Option<(Point3<f64>, Point3<f64>)> {
+        let towards = uniform_direction(rng);
+        let (first, inward) = self.field.contact(&towards);
+        // Uniform on the cap about the inward normal.
+        let cosine = rng.random_range(self.cone.cos()..=1.0);
+        let azimuth = rng.random_range(0.0..std::f64::consts::TAU);
+        let (a, b) = tangent_frame(&inward);
+        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+        let (sin, cos) = azimuth.sin_cos();
+        let way = inward.into_inner() * cosine + (a * cos + b * sin) * sine;
+        let width = self.exit(&first, &way, widest)?;
+        let second = first + way * width;
+        let (_, opposite) = self
+            .field
+            .contact(&Direction::try_new(second.coords, 1e-9)?);
+        (opposite.dot(&-way) >= self.cone.cos()).then_some((first, second))
+    }
+
+    /// Where a line that starts on the surface, or inside it, first leaves it within `longest`.
+    fn exit(&self, start: &Point3<f64>, way: &Vector3<f64>, longest: f64) -> Option<f64> {
+        let inside = |t: f64| {
+            let p = start + way * t;
+            Direction::try_new(p.coords, 1e-9)
+                .is_none_or(|d| p.coords.norm() < self.field.point(&d).coords.norm())
+        };
+        let step = STEP * self.radius;
+        let mut low = step;
+        if !inside(low) {
+            return None;
+        }
+        loop {
+            let mut high = low + step;
+            if !inside(high) {
+                for _ in 0..BISECTIONS {
+                    let middle = 0.5 * (low + high);
+                    if inside(middle) {
+                        low = middle;
+                    } else {
+                        high = middle;
+                    }
+                }
+                return (high <= longest).then_some(high);
+            }
+            if high > longest {
+                return None;
+            }
+            low = high;
+        }
+    }
+
+    /// The pose that brings the jaws about a pair, turned by `roll` about the line between its points
+    /// and moved by `shift` along the approach; none from below or where the palm would meet the surface.
+    fn about(
+        &self,
+        hand: &Hand,
+        jaws: &Jaws,
+        (first, second): (&Point3<f64>, &Point3<f64>),
+        roll: f64,
+        shift: f64,
+    ) -> Option<Isometry3<f64>> {
+        let axis = UnitVector3::try_new(first - second, 1e-9)?;
+        let (a, b) = tangent_frame(&axis);
+        let approach = a * roll.cos() + b * roll.sin();
+        if -approach.z < self.least_height - 1e-9 {
+            return None;
+        }
+        let middle = nalgebra::center(first, second) + approach * shift;
+        let back = self.exit(&middle, &-approach, jaws.depth - CLEARANCE)?;
+        if !(back < jaws.depth - CLEARANCE) {
+            return None;
+        }
+        let frame = |x: &Vector3<f64>, z: &Vector3<f64>| {
+            Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[*x, z.cross(x), *z]))
+        };
+        let in_palm = frame(&jaws.axis, &hand.approach_axis());
+        let in_object = frame(&axis, &approach);
+        let turn = UnitQuaternion::from_rotation_matrix(&(in_object * in_palm.inverse()));
+        let offset = middle - turn * jaws.middle;
+        Some(Isometry3::from_parts(offset.into(), turn))
+    }
+}
+
+/// The jaws of a pre-shape on their way, with the links that must stay clear.
+fn stations(hand: &Hand, preshape: usize) -> Vec<Station<'_>> {
+    let jaws = hand.jaws(preshape).unwrap_or_default();
+    let station = |(k, jaws): (usize, Jaws)| {
+        // Open tips are clear of the surface; closed ones touch it.
+        let of_tips = (k == 0).then_some(0.0);
+        let obstacles = Obstacles::new(hand, &jaws.joints, CLEARANCE, of_tips)?;
+        Some(Station { jaws, obstacles })
+    };
+    jaws.into_iter().enumerate().filter_map(station).collect()
+}
+
+fn uniform_direction<R: Rng + ?Sized>(rng: &mut R) -> Direction {
+    let z: f64 = rng.random_range(-1.0..=1.0);
+    let (sin, cos) = rng.random_range(0.0..std::f64::consts::TAU).sin_cos();
+    let ring = (1.0 - z * z).max(0.0).sqrt();
+    Direction::new_normalize(Vector3::new(ring * cos, ring * sin, z))
+}
