@@ -26,6 +26,6 @@ mod zip;
 pub use error::LoadError;
 pub use format::Format;
 pub use geometry::{Geometry, ImplausibleExtent, Loaded, Warning};
-pub use load::read_cloud;
+pub use load::{foreign_kind, read_cloud};
 pub use ply::{PlyPoints, read_ply};
 pub use write::{MeshFormat, write_mesh, write_ply};

@@ -59,6 +59,7 @@ fn tables_of_grasps_of_many_programs() {
             plain.replace('\n', "\r\n")
         ),
         plain.replace('\n', ",\n\n"),
+        format!(",{header}\n0,{}", plain.replacen('\n', "\n1,", 1)),
     ] {
         for name in ["g.csv", "g.txt", "g"] {
             let (found, warnings) = qualities(here, name, text.as_bytes());
@@ -77,9 +78,19 @@ fn tables_of_grasps_of_many_programs() {
     assert_eq!(qualities(here, "one.npy", &single).0, expected[..1]);
     let deep = reshaped("(2, 21, )", "(2, 7, 3)", &table);
     assert_eq!(qualities(here, "deep.npy", &deep).0, expected);
-    for text in ["1,2,3\n", "1,2,x\n", "solid\0\u{1}"] {
+    for (text, word) in [
+        ("1,2,3\n", "line 1"),
+        ("1,2,x\n", "column 2"),
+        ("solid\0\u{1}", "grasps.json"),
+        ("version https://git-lfs.github.com/spec/v1\n", "LFS"),
+        ("format: isaac_grasp\n", "Isaac"),
+    ] {
         std::fs::write(here.join("bad.csv"), text).unwrap();
-        refused(&moduli(here, &["quality", "bad.csv"]), 3, &["bad.csv"]);
+        refused(
+            &moduli(here, &["quality", "bad.csv"]),
+            3,
+            &["bad.csv", word],
+        );
     }
 }
 

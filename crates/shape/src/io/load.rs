@@ -47,6 +47,17 @@ pub fn read_cloud(bytes: &[u8], extension: &str) -> Result<Loaded, LoadError> {
     Ok(Loaded::new(format, raw)?.named(named))
 }
 
+/// What the bytes are, if they are of a kind that is known and not read: a Git LFS pointer, a web page,
+/// a format of another kind of program.
+///
+/// For readers of other files, which can then name the true cause.
+pub fn foreign_kind(bytes: &[u8]) -> Option<&'static str> {
+    match recognise(bytes) {
+        Content::Foreign(kind, _) => Some(kind),
+        _ => None,
+    }
+}
+
 /// Extensions of formats whose content has no mark.
 fn foreign_by_name(extension: &str) -> Result<Option<Format>, LoadError> {
     let (kind, advice) = match extension.to_ascii_lowercase().as_str() {

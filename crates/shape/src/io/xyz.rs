@@ -27,7 +27,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raw, LoadError> {
             continue;
         }
         let refuse = || {
-            let expected = "three numbers x y z";
+            let expected = match layout.separator {
+                Separator::Sign(',') => {
+                    "three numbers x y z (with decimal points where commas separate)"
+                }
+                _ => "three numbers x y z",
+            };
             LoadError::line(Format::Xyz, line.number, expected, &line.text)
         };
         raw.vertices
@@ -102,16 +107,9 @@ impl Layout {
         }
         if let Some((number, text)) = header {
             layout.columns = layout.named(&text, number)?;
-        } else if let Some(comment) = comment_before(bytes, layout.first) {
-            // A comment may say anything; only names of coordinates count.
-            let fields = comment_fields(&comment);
+        } else {
             let width = layout.fields(&line.text).len();
-            let names: Vec<&str> = fields.iter().map(String::as_str).collect();
-            if names.len() == width
-                && let Ok(columns) = table_header::columns(&names)
-            {
-                layout.columns = columns;
-            }
+            layout.columns = commented_columns(bytes, layout.first, width).unwrap_or([0, 1, 2]);
         }
         Ok(layout)
     }
@@ -142,6 +140,12 @@ impl Layout {
 
     fn number(&self, field: &str) -> Option<f64> {
         let field = field.trim_matches(['"', '\'']);
+        // Beside commas, `0057` is the second half of a number with a decimal comma.
+        let half =
+            |f: &str| f.len() > 1 && f.starts_with('0') && f.bytes().all(|b| b.is_ascii_digit());
+        if self.separator == Separator::Sign(',') && half(field) {
+            return None;
+        }
         match self.decimal_comma && field.contains(',') {
             true => number(&field.replacen(',', ".", 1)),
             false => number(field),
@@ -225,11 +229,19 @@ fn blanks_and_decimal_commas(line: &str) -> bool {
     fields.len() >= 3 && fields.iter().all(|f| number(f))
 }
 
-/// The last comment line before a line.
-fn comment_before(bytes: &[u8], line: usize) -> Option<String> {
+/// The columns that the last comment before a line names, among those that name `width` columns.
+///
+/// A comment may say anything; only names of coordinates count.
+fn commented_columns(bytes: &[u8], line: usize, width: usize) -> Option<[usize; 3]> {
     let before = Lines::new(bytes, &[]).take_while(|l| l.number < line);
     let comments = before.filter(|l| COMMENTS.iter().any(|c| l.text.starts_with(c)));
-    comments.last().map(|l| l.text.into_owned())
+    let named = comments.filter_map(|comment| {
+        let fields = comment_fields(&comment.text);
+        let names: Vec<&str> = fields.iter().map(String::as_str).collect();
+        let columns = table_header::columns(&names).ok();
+        columns.filter(|_| names.len() == width)
+    });
+    named.last()
 }
 
 fn comment_fields(comment: &str) -> Vec<String> {

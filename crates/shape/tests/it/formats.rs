@@ -357,6 +357,14 @@ fn columns_of_text() {
     ] {
         is_cloud(text.as_bytes(), extension);
     }
+    let time = csv("# t x y z\n# 6 rows\n", &|i, [x, y, z]| {
+        format!("{i} {x} {y} {z}")
+    });
+    is_cloud(time.as_bytes(), "txt");
+    let commas = csv("", &|_, c| {
+        c.map(|x| format!("{x:.3}").replace('.', ",")).join(",")
+    });
+    refused(commas.as_bytes(), "csv", &["line 3", "decimal"]);
     let other = csv("latitude,longitude,height,id\n", &id);
     refused(other.as_bytes(), "csv", &["line 1", "latitude", "header"]);
     let missing = rows().replacen("0.1 0 0", "0.1 0", 1);

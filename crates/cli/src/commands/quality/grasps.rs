@@ -16,6 +16,9 @@ const NEARLY_UNIT: f64 = 0.01;
 /// Normals whose length is farther from 1 than this are counted, since they were made unit vectors.
 const UNIT: f64 = 1e-6;
 
+const EXPECTED: &str =
+    "expected a grasps.json, or rows of numbers as an array of NumPy or as text (.csv)";
+
 /// The grasps of a file.
 pub(super) struct GraspSet {
     pub(super) grasps: Vec<Grasp>,
@@ -34,6 +37,13 @@ pub(super) struct GraspSet {
 pub(super) fn read_grasps(path: &Path, asked: Option<&Convention>) -> Result<GraspSet, Failure> {
     let bytes = input::read(path)?;
     let start = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
+    if let Some(kind) = shape::io::foreign_kind(&bytes) {
+        return Err(Failure::input(path, format!("this is {kind}; {EXPECTED}")));
+    }
+    if start.starts_with(b"format: isaac_grasp") {
+        let why = "grasps of Isaac Sim are written and not read; give the grasps.json beside them";
+        return Err(Failure::input(path, why));
+    }
     let mut reader = Reader { path, adjusted: 0 };
     let (mut rule, mut tips) = (None, TipModel::Point);
     let named_json = path.extension().is_some_and(|e| e == "json");
@@ -159,37 +169,42 @@ impl Reader<'_> {
 ///
 /// Columns are separated by semicolons if a line has any, else by commas, else by blanks; beside
 /// semicolons a comma is a decimal comma. `#` begins a comment, and a first line without any number
-/// is a header.
+/// is a header; where its first name is empty, the first column is left out.
 fn rows_of_text(path: &Path, bytes: &[u8]) -> Result<Vec<(usize, Vec<f64>)>, Failure> {
     let binary = |b: &u8| b.is_ascii_control() && !b.is_ascii_whitespace();
     if bytes.iter().any(binary) {
-        return Err(Failure::input(
-            path,
-            "not a file of grasps; expected a grasps.json, or rows of numbers as .npy or as text (.csv)",
-        ));
+        let why = format!("not a file of grasps; {EXPECTED}");
+        return Err(Failure::input(path, why));
     }
     let text = String::from_utf8_lossy(bytes);
     let mut rows: Vec<(usize, Vec<f64>)> = Vec::new();
-    let mut header = false;
+    // Numbers of rows that stand in a first column without a name.
+    let mut index_column = None;
     for (index, line) in text.split('\n').enumerate() {
         let line = line.split('#').next().unwrap_or_default().trim();
         if line.is_empty() {
             continue;
         }
-        let cells = cells(line);
-        let numbers: Vec<Option<f64>> = cells.iter().map(|cell| number(cell)).collect();
-        if rows.is_empty() && !header && numbers.iter().all(Option::is_none) {
-            header = true;
+        let mut cells = cells(line);
+        if rows.is_empty() && index_column.is_none() && cells.iter().all(|c| number(c).is_none()) {
+            index_column = Some(cells[0].is_empty());
             continue;
         }
-        let place = format!("line {}", index + 1);
-        if let Some(column) = numbers.iter().position(Option::is_none) {
-            let cell = cells[column];
-            let why = format!("{place}, column {column} is `{cell}`; expected a number");
-            return Err(Failure::input(path, why));
+        if index_column == Some(true) {
+            cells.remove(0);
         }
-        contacts_in(path, &place, cells.len())?;
-        rows.push((index + 1, numbers.into_iter().flatten().collect()));
+        let place = format!("line {}", index + 1);
+        let named = |(column, cell): (usize, &&str)| {
+            let why = format!("{place}, column {column} is `{cell}`; expected a number");
+            number(cell).ok_or_else(|| Failure::input(path, why))
+        };
+        let numbers: Vec<f64> = cells
+            .iter()
+            .enumerate()
+            .map(named)
+            .collect::<Result<_, _>>()?;
+        contacts_in(path, &place, numbers.len())?;
+        rows.push((index + 1, numbers));
     }
     Ok(rows)
 }
