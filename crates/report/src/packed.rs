@@ -1,6 +1,6 @@
 //! Data of a page in little room: text, deflated and in base64.
 //!
-//! Coordinates stay decimal numbers: rounded to 0.01 mm they deflate to less room than their bytes do.
+//! Coordinates stay decimal numbers: rounded to 0.02 mm they deflate to less room than their bytes do.
 
 use std::io::Write;
 

@@ -1,12 +1,15 @@
 //! Fewer digits: what a picture cannot show is not worth its bytes.
 
-/// Metres to millimetres, rounded to 0.01 mm (1e-5 m).
+/// Metres to millimetres, rounded to 0.02 mm.
+///
+/// A picture of a 20 cm object has about 0.3 mm per pixel. Steps of 0.02 mm keep shaded meshes smooth
+/// and deflate to less room than steps of 0.01 mm.
 pub(crate) fn millimetres(metres: f64) -> f64 {
     // Adding zero turns −0 into 0.
-    (metres * 1e5).round() / 100.0 + 0.0
+    (metres * 5e4).round() / 50.0 + 0.0
 }
 
-/// Millimetres of a point in metres, rounded to 0.01 mm.
+/// Millimetres of a point in metres, rounded to 0.02 mm.
 pub(crate) fn point_millimetres(point_m: [f64; 3]) -> [f64; 3] {
     point_m.map(millimetres)
 }
@@ -45,8 +48,8 @@ mod tests {
     use proptest::prelude::{prop_assert, proptest};
 
     #[test]
-    fn millimetres_have_two_decimals() {
-        assert_eq!(millimetres(0.012_345_678), 12.35);
+    fn millimetres_come_in_steps_of_two_hundredths() {
+        assert_eq!(millimetres(0.012_345_678), 12.34);
         assert_eq!(millimetres(-1e-9).to_string(), "0");
     }
 

@@ -171,11 +171,11 @@ fn a_grasp_page_holds_its_data_in_millimetres() {
     let html = grasp_page(&object("mug")).unwrap();
     let data = json_of(&html, "grasp-data");
     let surface = &data["plot"]["data"][0];
-    assert_eq!(surface["x"], serde_json::json!([100.0, 0.0, 0.0, -31.23]));
+    assert_eq!(surface["x"], serde_json::json!([100.0, 0.0, 0.0, -31.24]));
     assert_eq!(surface["i"], serde_json::json!([0, 0, 1, 0]));
     let cloud = &data["plot"]["data"][1];
     assert_eq!(cloud["x"].as_array().unwrap().len(), 3000);
-    assert_eq!(cloud["z"][0], 41.11);
+    assert_eq!(cloud["z"][0], 41.12);
     let grasps = data["grasps"].as_array().unwrap();
     assert_eq!(grasps.len(), 2);
     let traces = grasps[0].as_array().unwrap().iter();
