@@ -186,7 +186,7 @@ fn a_grasp_page_holds_its_data_in_millimetres() {
             "grasp", "grasp", "grasp", "cones", "wrench", "wrench", "hand"
         ]
     );
-    assert_eq!(grasps[0][1]["x"], serde_json::json!([12.35, 0.0]));
+    assert_eq!(grasps[0][1]["x"], serde_json::json!([12.34, 0.0]));
     assert!(html.contains("0.4123"));
     assert!(html.contains("<dd>12.3, -20.0, 0.0</dd>"));
     // To the scan, and whether there is a hand.
