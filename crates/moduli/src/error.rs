@@ -20,6 +20,9 @@ pub enum Error {
     /// Points with sphere coordinates have no proved surface.
     #[error(transparent)]
     SphericalFit(#[from] shape::SphericalFitError),
+    /// The cloud has no proved surface over the sphere.
+    #[error(transparent)]
+    SphericalCloud(#[from] shape::SphericalCloudError),
     /// Another number of directions than of points.
     #[error("{directions} directions for {points} points; expected one direction per point")]
     DirectionCount {

@@ -66,7 +66,9 @@ pub use ::grasp::{
 pub use ::hand::{Hand, OutcomeCounts, TipModel};
 pub use ::record;
 pub use ::shape::io::Format;
-pub use ::shape::{FitSettings, PointCloud, RadialShape, SphericalShape, Surface};
+pub use ::shape::{
+    FitSettings, PointCloud, RadialShape, SphericalSettings, SphericalShape, Surface,
+};
 pub use ::sph::Direction;
 pub use nalgebra;
 

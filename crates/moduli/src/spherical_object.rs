@@ -2,7 +2,10 @@
 
 use nalgebra::{Point3, UnitVector3};
 use record::SphericalRecord;
-use shape::{FitSettings, PointCloud, SphericalFit, SphericalShape, Surface, fit_spherical};
+use shape::{
+    FitSettings, PointCloud, SphericalCloudFit, SphericalFit, SphericalSettings, SphericalShape,
+    Surface, fit_spherical, fit_spherical_cloud,
+};
 use sph::{Coefficients, Direction};
 
 use crate::error::Error;
@@ -87,6 +90,37 @@ impl SphericalObject {
         }
         let fit = fit_spherical(directions, cloud, settings)?;
         Ok(Self::from_fit(name, fit, points))
+    }
+
+    /// Fits a surface to a cloud of any closed object without given directions.
+    ///
+    /// The cloud is wrapped in a mesh of genus zero, which is mapped onto the sphere; see
+    /// [`fit_spherical_cloud`]. Handles are closed: take [`fit_spherical_cloud`] and
+    /// [`SphericalObject::from_cloud_fit`] to know which. A few seconds at degree 50.
+    ///
+    /// # Errors
+    /// The cloud cannot be wrapped or mapped, every fit cuts itself, or none is proved an immersion.
+    pub fn from_cloud(
+        name: &str,
+        cloud: &PointCloud,
+        settings: &SphericalSettings,
+    ) -> Result<Self, Error> {
+        Ok(Self::from_cloud_fit(
+            name,
+            fit_spherical_cloud(cloud, settings)?,
+        ))
+    }
+
+    /// The object of a fit without given directions.
+    pub fn from_cloud_fit(name: &str, fit: SphericalCloudFit) -> Self {
+        Self {
+            name: name.to_owned(),
+            shape: fit.shape,
+            frame: CloudFrame::new(fit.centre_in_cloud),
+            lambda: [fit.lambda; 3],
+            rms: fit.surface_rms,
+            points: fit.points,
+        }
     }
 
     /// The object of a fit of `points` points.

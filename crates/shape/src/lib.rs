@@ -25,6 +25,7 @@
 //! ```
 
 pub mod algebra;
+mod crossing;
 pub mod embedding;
 pub mod fit;
 mod hole_filling;
@@ -43,7 +44,9 @@ mod radial_field;
 mod rotation_field;
 mod sphere_partition;
 mod spherical;
+mod spherical_cloud;
 mod spherical_fit;
+mod spherical_rows;
 pub mod surface;
 pub mod triangle_mesh;
 pub mod visibility;
@@ -56,6 +59,9 @@ pub use point_cloud::{CloudError, PointCloud};
 pub use radial::{RadialError, RadialShape};
 pub use radial_field::RadialField;
 pub use spherical::SphericalShape;
+pub use spherical_cloud::{
+    SphericalCloudError, SphericalCloudFit, SphericalSettings, fit_spherical_cloud,
+};
 pub use spherical_fit::{SphericalFit, SphericalFitError, fit_spherical};
 pub use surface::{Differential, Surface};
 pub use triangle_mesh::TriangleMesh;

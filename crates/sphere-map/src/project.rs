@@ -1,10 +1,11 @@
 //! Vertices of a mesh moved onto the sheet of points that they belong to.
 
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
 
 use crate::mesh::Mesh;
 use crate::points::Points;
+use crate::tree::Tree;
 
 /// Points looked at, and the least cosine between their normals and that of the vertex.
 const NEAR: usize = 24;
@@ -21,9 +22,31 @@ pub(crate) struct Sheet<'a> {
     pub(crate) spacing: f64,
 }
 
+/// Where the normals of the points near a vertex agree less than this, it is on a crease and stays.
+const CREASE: f64 = 0.97;
+/// Rounds in which vertices of triangles that cut others go back to where they were.
+const ROUNDS: usize = 4;
+
 /// Moves every vertex along its normal onto the planes of the points near it whose normals agree with
 /// its own. The other side of a thin wall has no influence; vertices far from all points stay.
+///
+/// Where that would let the mesh cut itself, the vertices stay too.
 pub(crate) fn project(mesh: &mut Mesh, sheet: &Sheet) {
+    let before = mesh.vertices.clone();
+    let places = projected(mesh, sheet);
+    mesh.vertices = places;
+    for _ in 0..ROUNDS {
+        let crossings = Tree::new(mesh).crossings(usize::MAX);
+        if crossings.is_empty() {
+            return;
+        }
+        for v in crossings.iter().flatten().flat_map(|t| mesh.triangles[*t]) {
+            mesh.vertices[v as usize] = before[v as usize];
+        }
+    }
+}
+
+fn projected(mesh: &Mesh, sheet: &Sheet) -> Vec<Point3<f64>> {
     let mut normals = vec![Vector3::zeros(); mesh.vertices.len()];
     for triangle in &mesh.triangles {
         let vector = mesh.area_vector(triangle);
@@ -34,13 +57,13 @@ pub(crate) fn project(mesh: &mut Mesh, sheet: &Sheet) {
     let scale = -0.5 / (WIDTH * sheet.spacing).powi(2);
     let limit = (REACH * sheet.spacing).powi(2);
     mesh.vertices
-        .par_iter_mut()
+        .par_iter()
         .zip(&normals)
-        .for_each(|(vertex, normal)| {
+        .map(|(vertex, normal)| {
             let Some(normal) = normal.try_normalize(0.0) else {
-                return;
+                return *vertex;
             };
-            let (mut sum, mut total) = (Vector3::zeros(), 0.0);
+            let (mut sum, mut along, mut total) = (Vector3::zeros(), Vector3::zeros(), 0.0);
             for (squared, i) in sheet.grid.nearest(vertex, NEAR) {
                 let n = &sheet.normals[i as usize];
                 let agreement = n.dot(&normal);
@@ -49,10 +72,14 @@ pub(crate) fn project(mesh: &mut Mesh, sheet: &Sheet) {
                 }
                 let weight = agreement * (scale * squared).exp();
                 sum += n * (weight * n.dot(&(*vertex - sheet.grid.point(i))));
+                along += n * weight;
                 total += weight;
             }
-            if total > 0.0 {
-                *vertex -= sum / total;
+            if along.norm() > CREASE * total {
+                vertex - sum / total
+            } else {
+                *vertex
             }
-        });
+        })
+        .collect()
 }

@@ -26,8 +26,11 @@ const LEAF: usize = 4;
 #[derive(Clone, Debug)]
 pub struct Tree {
     corners: Vec<[Point3<f64>; 3]>,
-    /// Index of the triangle of every entry of `corners`.
+    /// Indices of the corners in the mesh.
+    ids: Vec<[u32; 3]>,
+    /// Index of the triangle of every entry of `corners`, and the way back.
     order: Vec<u32>,
+    entries: Vec<u32>,
     nodes: Vec<Node>,
 }
 
@@ -61,8 +64,14 @@ impl Tree {
         if !order.is_empty() {
             build(&all, &mut order, 0, &mut nodes);
         }
+        let mut entries = vec![0; order.len()];
+        for (entry, triangle) in order.iter().enumerate() {
+            entries[*triangle as usize] = entry as u32;
+        }
         Self {
+            entries,
             corners: order.iter().map(|i| all[*i as usize]).collect(),
+            ids: order.iter().map(|i| mesh.triangles[*i as usize]).collect(),
             order,
             nodes,
         }
@@ -77,6 +86,63 @@ impl Tree {
     /// is left out; `None` when there are no such triangles.
     pub fn closest_facing(&self, p: &Point3<f64>, normal: &Vector3<f64>) -> Option<Closest> {
         self.search(p, |[a, b, c]| (b - a).cross(&(c - a)).dot(normal) > 0.0)
+    }
+
+    /// The point that [`Tree::closest`] found.
+    pub fn place(&self, at: &Closest) -> Point3<f64> {
+        let [a, b, c] = &self.corners[self.entries[at.triangle] as usize];
+        let [u, v, w] = at.weights;
+        Point3::from(a.coords * u + b.coords * v + c.coords * w)
+    }
+
+    /// Pairs of triangles without a common corner that cut each other; the search ends at `most` pairs.
+    pub fn crossings(&self, most: usize) -> Vec<[usize; 2]> {
+        let mut found = Vec::new();
+        let mut stack = vec![(0_u32, 0_u32)];
+        if self.nodes.is_empty() {
+            return found;
+        }
+        while let Some((a, b)) = stack.pop() {
+            let (one, other) = (&self.nodes[a as usize], &self.nodes[b as usize]);
+            if !one.touches(other) {
+                continue;
+            }
+            match (one.right == 0, other.right == 0) {
+                (true, true) => {
+                    for i in one.from as usize..one.to as usize {
+                        let start = if a == b { i + 1 } else { other.from as usize };
+                        for j in start..other.to as usize {
+                            if self.cross(i, j) {
+                                found.push([self.order[i] as usize, self.order[j] as usize]);
+                                if found.len() >= most {
+                                    return found;
+                                }
+                            }
+                        }
+                    }
+                }
+                _ if a == b => {
+                    let (left, right) = (a + 1, one.right);
+                    stack.extend([(left, left), (right, right), (left, right)]);
+                }
+                (leaf, _) if leaf || (other.right != 0 && other.size() > one.size()) => {
+                    stack.extend([(a, b + 1), (a, other.right)]);
+                }
+                _ => stack.extend([(a + 1, b), (one.right, b)]),
+            }
+        }
+        found
+    }
+
+    fn cross(&self, i: usize, j: usize) -> bool {
+        if self.ids[i].iter().any(|v| self.ids[j].contains(v)) {
+            return false;
+        }
+        let (s, t) = (&self.corners[i], &self.corners[j]);
+        let edges = [(0, 1), (1, 2), (2, 0)];
+        edges
+            .iter()
+            .any(|(a, b)| pierces(&s[*a], &s[*b], t) || pierces(&t[*a], &t[*b], s))
     }
 
     fn search(
@@ -119,7 +185,27 @@ impl Tree {
     }
 }
 
+/// Whether a segment passes through a triangle; one in its plane does not.
+fn pierces(p: &Point3<f64>, q: &Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> bool {
+    let volume = |x: &Point3<f64>, y: &Point3<f64>, z: &Point3<f64>, w: &Point3<f64>| {
+        (y - x).cross(&(z - x)).dot(&(w - x))
+    };
+    if volume(a, b, c, p) * volume(a, b, c, q) >= 0.0 {
+        return false;
+    }
+    let [u, v, w] = [volume(p, q, a, b), volume(p, q, b, c), volume(p, q, c, a)];
+    (u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0)
+}
+
 impl Node {
+    fn touches(&self, other: &Self) -> bool {
+        (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
+    }
+
+    fn size(&self) -> f64 {
+        (self.high - self.low).norm_squared()
+    }
+
     fn gap(&self, p: &Point3<f64>) -> f64 {
         let inside = p.sup(&self.low).inf(&self.high);
         (inside - p).norm_squared()
@@ -202,6 +288,25 @@ pub(crate) fn closest_on_triangle(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn crossings_are_those_of_all_pairs() {
+        let wave = |i: usize, k: f64| (i as f64 * k).sin();
+        let vertices: Vec<Point3<f64>> = (0..180)
+            .map(|i| Point3::new(wave(i, 1.1), wave(i, 2.3), wave(i, 3.7)) * 0.5)
+            .collect();
+        let triangles: Vec<[u32; 3]> = (0..60).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let tree = Tree::new(&Mesh {
+            vertices,
+            triangles,
+        });
+        let mut all = 0;
+        for i in 0..60 {
+            all += (i + 1..60).filter(|j| tree.cross(i, *j)).count();
+        }
+        assert!(all > 20);
+        assert_eq!(tree.crossings(usize::MAX).len(), all);
+    }
 
     #[test]
     fn the_closest_point_is_that_of_a_full_search() {

@@ -11,7 +11,7 @@ use super::{CloudOptions, count_in};
 pub(crate) enum Model {
     /// A radius per direction from the mean of the cloud; the object must be star-shaped.
     Radial,
-    /// A map of the sphere into space, for given sphere coordinates of the points.
+    /// A map of the sphere into space, for any closed object; handles are closed and reported.
     Spherical,
 }
 
@@ -28,6 +28,7 @@ pub(crate) struct FitOptions {
     #[arg(long, value_enum, default_value_t = Model::Radial)]
     pub(crate) model: Model,
     /// For the spherical model: the place of each point on the sphere, as unit vectors, N×3 in .npy.
+    /// Without it the places are found.
     #[arg(long, value_name = "U.npy")]
     pub(crate) directions: Option<PathBuf>,
     #[command(flatten)]

@@ -1,6 +1,7 @@
 //! `moduli fit`: smooth surfaces of clouds, proved valid.
 
 mod spherical;
+mod wrapped;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -36,7 +37,10 @@ struct FitLine {
 pub(crate) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> {
     refuse_shared_names(options)?;
     if options.model == Model::Spherical {
-        return spherical::run(options, common);
+        return match &options.directions {
+            Some(_) => spherical::run(options, common),
+            None => wrapped::run(options, common),
+        };
     }
     if options.directions.is_some() {
         return Err(Failure::usage("--directions needs --model spherical"));

@@ -231,3 +231,38 @@ fn a_constant_is_fitted_at_every_degree() {
     let mean = noisy.iter().sum::<f64>() / 600.0;
     assert!(found.distance(&Coefficients::constant(0, mean)) <= 1e-15);
 }
+
+#[test]
+fn other_values_are_fitted_through_the_same_matrix() {
+    for degree in [8, 24] {
+        let directions = elongated(4000, 1.6);
+        let weights: Vec<f64> = (0..4000).map(|i| 1.0 + 0.5 * f64::from(i % 2)).collect();
+        let values: Vec<f64> = (0..4000).map(noise).collect();
+        let of = |values| Samples {
+            directions: &directions,
+            values,
+        };
+        let gram = Gram::weighted(of(&values), &weights, degree).unwrap();
+        let other: Vec<f64> = batch::evaluate(&truth(degree), &directions);
+        let other: Vec<f64> = other.iter().zip(&values).map(|(a, b)| a + b).collect();
+        let penalty = Penalty {
+            lambda: 1e-3,
+            power: 2,
+        };
+        let right = gram.right_hand_side(of(&other)).unwrap();
+        let found = gram.continued(&right, penalty, None).unwrap();
+        let plain = Gram::weighted(of(&other), &weights, degree).unwrap();
+        let plain = plain
+            .coefficients(of(&other), penalty, Method::Cholesky)
+            .unwrap();
+        let size = plain.distance(&Coefficients::zeros(degree));
+        assert!(found.distance(&plain) <= 1e-5 * size, "L={degree}");
+        let again = gram.continued(&right, penalty, Some(&plain)).unwrap();
+        assert!(again.distance(&plain) <= 1e-5 * size, "L={degree}");
+        let few = Samples {
+            directions: &directions[1..],
+            values: &other[1..],
+        };
+        assert!(gram.right_hand_side(few).is_err());
+    }
+}

@@ -33,12 +33,7 @@ struct SphericalLine {
 pub(super) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> {
     let (path, directions) = match (options.clouds.as_slice(), &options.directions) {
         ([path], Some(directions)) => (path, directions),
-        ([_], None) => {
-            return Err(Failure::usage(
-                "--model spherical needs --directions U.npy, one unit vector per point of the cloud",
-            ));
-        }
-        _ => return Err(Failure::usage("--model spherical takes one cloud")),
+        _ => return Err(Failure::usage("--directions takes one cloud")),
     };
     if options.cloud.heat.is_some() {
         return Err(Failure::usage("--heat applies to --model radial only"));

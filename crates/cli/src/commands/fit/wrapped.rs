@@ -1,0 +1,135 @@
+//! `moduli fit --model spherical` without given directions: wrap, map, fit.
+
+use std::path::Path;
+use std::time::Instant;
+
+use moduli::SphericalObject;
+use serde::Serialize;
+use shape::{SphericalSettings, fit_spherical_cloud};
+
+use super::target;
+use crate::args::{Common, FitOptions};
+use crate::failure::Failure;
+use crate::{input, output};
+
+#[derive(Serialize)]
+struct WrappedLine {
+    cloud: String,
+    points: usize,
+    points_fitted: usize,
+    model: &'static str,
+    degree: usize,
+    lambda: [f64; 3],
+    rms_m: f64,
+    max_abs_m: f64,
+    surface_rms_m: f64,
+    in_m_sph: bool,
+    embedding: &'static str,
+    area_element_certified_m2: f64,
+    volume_m3: f64,
+    closed_holes: Vec<Hole>,
+    centre_m: [f64; 3],
+    seconds: f64,
+}
+
+/// A handle that was closed; no contact belongs there.
+#[derive(Serialize)]
+struct Hole {
+    centre_m: [f64; 3],
+    area_m2: f64,
+    radius_m: f64,
+}
+
+/// Fits clouds of any closed objects.
+pub(super) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> {
+    if options.cloud.heat.is_some() {
+        return Err(Failure::usage("--heat applies to --model radial only"));
+    }
+    let mut failures = Vec::new();
+    for path in &options.clouds {
+        match fit_one(path, options, common.seed) {
+            Ok(line) if common.json => output::say_json(&line)?,
+            Ok(line) => say(path, &line),
+            Err(failure) => failures.push(failure),
+        }
+    }
+    Failure::all(failures)
+}
+
+fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<WrappedLine, Failure> {
+    let cloud = input::cloud(path, &options.cloud, seed)?;
+    let start = Instant::now();
+    let settings = SphericalSettings {
+        degree: options.cloud.degree,
+        lambda: options.cloud.lambda,
+    };
+    let fit = fit_spherical_cloud(&cloud, &settings)
+        .map_err(|e| Failure::refused(format!("{}: {e}", path.display())))?;
+    let closed_holes = fit.closed_holes.iter().map(|hole| Hole {
+        centre_m: hole.centre.into(),
+        area_m2: hole.area,
+        radius_m: hole.radius,
+    });
+    let closed_holes = closed_holes.collect();
+    let max_abs_m = fit.surface_max;
+    let object = SphericalObject::from_cloud_fit(&input::stem(path), fit);
+    let seconds = start.elapsed().as_secs_f64();
+    if let Some(target) = target(path, options) {
+        let bytes = object.to_record().to_bytes();
+        output::write_file(&target, &bytes.map_err(|e| Failure::other(e.to_string()))?)?;
+    }
+    let shape = object.shape();
+    Ok(WrappedLine {
+        cloud: path.display().to_string(),
+        points: cloud.points().len(),
+        points_fitted: object.points(),
+        model: "spherical",
+        degree: shape.degree(),
+        lambda: object.lambda(),
+        rms_m: object.rms(),
+        max_abs_m,
+        // The points were moved to the nearest places of the surface, so both are one number.
+        surface_rms_m: object.rms(),
+        // A map that is not proved an immersion is refused by the fit.
+        in_m_sph: true,
+        embedding: "immersion",
+        area_element_certified_m2: shape.immersion().lower,
+        volume_m3: shape.mass_properties().volume,
+        closed_holes,
+        centre_m: object.frame().centre_in_cloud().into(),
+        seconds,
+    })
+}
+
+fn say(path: &Path, line: &WrappedLine) {
+    output::say(format!(
+        "{}: {} points, degree {}, rms {:.3} mm, max {:.3} mm; {} ({:.2} s)",
+        input::stem(path),
+        line.points,
+        line.degree,
+        1e3 * line.rms_m,
+        1e3 * line.max_abs_m,
+        proved(line.embedding),
+        line.seconds
+    ));
+    if line.points_fitted < line.points {
+        output::say(format!(
+            "  {} points are hidden from outside or far from the surface and were left out",
+            line.points - line.points_fitted
+        ));
+    }
+    for hole in &line.closed_holes {
+        let [x, y, z] = hole.centre_m;
+        output::say(format!(
+            "  a hole of {:.1} cm² at ({x:.3}, {y:.3}, {z:.3}) m was closed",
+            1e4 * hole.area_m2
+        ));
+    }
+}
+
+fn proved(embedding: &str) -> &'static str {
+    match embedding {
+        "proved" => "proved not to touch itself",
+        _ => "proved an immersion",
+    }
+}

@@ -1,0 +1,252 @@
+//! A surface in M^sph from a cloud alone: wrap, map, fit.
+
+use nalgebra::Point3;
+use rayon::prelude::*;
+use sph::Coefficients;
+use sph::regression::RegressionError;
+use sphere_map::{
+    ClosedHole, MapError, MapSettings, Tree, Wrap, WrapError, WrapSettings, sphere_map, wrap,
+};
+
+use crate::crossing::crossing;
+use crate::immersion::SphericalError;
+use crate::point_cloud::PointCloud;
+use crate::spherical::SphericalShape;
+use crate::spherical_rows::{Equations, Rows, reproject};
+
+/// Penalties that the search for an embedded start goes through, from detailed to smooth.
+const STARTS: [f64; 5] = [3e-8, 1e-6, 3e-5, 3e-4, 2e-3];
+/// The continuation never goes below this penalty.
+const LEAST_LAMBDA: f64 = 1e-8;
+/// Steps of the continuation at most, the factor of λ in the first one, and the one that ends it.
+const ROUNDS: usize = 10;
+const FIRST_FACTOR: f64 = 0.3;
+const LAST_FACTOR: f64 = 0.85;
+/// It also ends when a step lowers the residual by less than this share.
+const GAIN: f64 = 0.01;
+/// The maps that are tried: weight of areas and barrier. The second pair is for clouds for which the
+/// first gives nothing.
+const MAPS: [[(f64, f64); 2]; 2] = [[(3.0, 0.3), (3.0, 0.05)], [(10.0, 0.05), (1.0, 0.05)]];
+/// Anchors move to places of the wrap within so many spacings.
+const REACH: f64 = 2.0;
+
+/// How a cloud is fitted without given directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SphericalSettings {
+    /// Degree L of the coordinates.
+    pub degree: usize,
+    /// λ; chosen if it is not given.
+    pub lambda: Option<f64>,
+}
+
+/// Why a cloud has no surface in M^sph.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SphericalCloudError {
+    /// The cloud could not be wrapped.
+    #[error(transparent)]
+    Wrap(#[from] WrapError),
+    /// No setting gave a bijective map.
+    #[error("no map of the wrapped cloud onto the sphere is one to one: {0}")]
+    Map(#[from] MapError),
+    /// A regression failed.
+    #[error(transparent)]
+    Regression(#[from] RegressionError),
+    /// No fit is an immersion.
+    #[error(transparent)]
+    Spherical(#[from] SphericalError),
+    /// Every fit cuts itself.
+    #[error(
+        "every fitted surface cuts itself, the smoothest near ({x:.4}, {y:.4}, {z:.4}) m; parts of the object may be thinner than the scan resolves"
+    )]
+    Crossing {
+        /// Where, in the frame of the cloud, metres.
+        x: f64,
+        /// The same, y.
+        y: f64,
+        /// The same, z.
+        z: f64,
+    },
+}
+
+/// A surface fitted to a cloud, and how well.
+#[derive(Clone, Debug)]
+pub struct SphericalCloudFit {
+    /// The surface, in the centred frame.
+    pub shape: SphericalShape,
+    /// Origin of the centred frame in the frame of the cloud: the mean of the cloud. Metres.
+    pub centre_in_cloud: Point3<f64>,
+    /// λ used for all coordinates, for weights that add up to 4π.
+    pub lambda: f64,
+    /// Root mean square of the distances from the points to the surface, metres.
+    pub surface_rms: f64,
+    /// Largest distance of a point from the surface, metres.
+    pub surface_max: f64,
+    /// Number of points that the surface was fitted to.
+    pub points: usize,
+    /// Handles and tunnels that were closed, in the frame of the cloud.
+    pub closed_holes: Vec<ClosedHole>,
+}
+
+/// A surface on the way.
+struct Candidate {
+    coordinates: [Coefficients; 3],
+    lambda: f64,
+    rms: f64,
+    max: f64,
+    points: usize,
+}
+
+/// What does not change while one cloud is fitted.
+struct Work<'a> {
+    points: &'a [Point3<f64>],
+    centre: Point3<f64>,
+    wrap: &'a Wrap,
+    tree: Tree,
+    settings: SphericalSettings,
+}
+
+/// Fits a surface to a cloud of any closed object; handles are closed and reported.
+///
+/// The cloud is wrapped in a mesh of genus zero, and the mesh is mapped onto the sphere, which gives every
+/// point a direction. From the first penalty that gives a surface whose mesh does not cut itself a
+/// continuation goes to smaller penalties. In every step the points move to the nearest places of the
+/// surface before, and so do anchors on the wrap, which keep the surface in place where there are no
+/// points. The last surface that does not cut itself is kept; of several maps the one with the least
+/// residual.
+///
+/// # Errors
+/// [`SphericalCloudError`].
+pub fn fit_spherical_cloud(
+    cloud: &PointCloud,
+    settings: &SphericalSettings,
+) -> Result<SphericalCloudFit, SphericalCloudError> {
+    let wrap = wrap(cloud.points(), &WrapSettings::default())?;
+    let work = Work {
+        points: cloud.points(),
+        centre: cloud.mean(),
+        tree: Tree::new(&wrap.mesh),
+        wrap: &wrap,
+        settings: *settings,
+    };
+    let mut error = SphericalCloudError::Regression(RegressionError::Empty);
+    for maps in MAPS {
+        let tried: Vec<Result<Candidate, SphericalCloudError>> =
+            maps.par_iter().map(|map| work.over_map(*map)).collect();
+        let mut found = Vec::new();
+        for result in tried {
+            match result {
+                Ok(candidate) => found.push(candidate),
+                Err(e) => error = e,
+            }
+        }
+        found.sort_by(|a, b| a.rms.total_cmp(&b.rms));
+        for candidate in found {
+            let [x, y, z] = candidate.coordinates;
+            match SphericalShape::new(x, y, z) {
+                Ok(shape) => {
+                    return Ok(SphericalCloudFit {
+                        shape,
+                        centre_in_cloud: work.centre,
+                        lambda: candidate.lambda,
+                        surface_rms: candidate.rms,
+                        surface_max: candidate.max,
+                        points: candidate.points,
+                        closed_holes: wrap.closed_holes,
+                    });
+                }
+                Err(e) => error = e.into(),
+            }
+        }
+    }
+    Err(error)
+}
+
+impl Work<'_> {
+    /// The best fit over one map.
+    fn over_map(
+        &self,
+        (area_weight, barrier): (f64, f64),
+    ) -> Result<Candidate, SphericalCloudError> {
+        let map = MapSettings {
+            area_weight,
+            barrier,
+            ..MapSettings::default()
+        };
+        let map = sphere_map(&self.wrap.mesh, &map)?;
+        let degree = self.settings.degree;
+        let rows = Rows::new(self.points, self.wrap, &map, &self.centre, degree);
+        let (coordinates, lambda) = self.start(&rows)?;
+        self.continued(&rows, coordinates, lambda)
+    }
+
+    /// The first fit that does not cut itself, from detailed to smooth.
+    fn start(&self, rows: &Rows) -> Result<([Coefficients; 3], f64), SphericalCloudError> {
+        let equations = Equations::new(rows, self.settings.degree)?;
+        let given = self.settings.lambda.map(|l| vec![l]);
+        let mut place = self.centre;
+        let mut last: Option<[Coefficients; 3]> = None;
+        for lambda in given.unwrap_or_else(|| STARTS.to_vec()) {
+            let next = equations.solve(lambda, last.as_ref())?;
+            match crossing(&next) {
+                None => return Ok((next, lambda)),
+                Some(at) => place = self.centre + at.coords,
+            }
+            last = Some(next);
+        }
+        let Point3 { coords: at } = place;
+        Err(SphericalCloudError::Crossing {
+            x: at.x,
+            y: at.y,
+            z: at.z,
+        })
+    }
+
+    /// From an embedded surface to more detailed ones.
+    fn continued(
+        &self,
+        rows: &Rows,
+        start: [Coefficients; 3],
+        mut lambda: f64,
+    ) -> Result<Candidate, SphericalCloudError> {
+        let limit = REACH * self.wrap.spacing;
+        let (mut directions, mut gaps) = reproject(&start, rows);
+        let mut kept = start;
+        let mut rms = root_mean_square(&gaps);
+        let mut factor = if self.settings.lambda.is_some() {
+            1.0
+        } else {
+            FIRST_FACTOR
+        };
+        for _ in 0..ROUNDS {
+            let along = rows.along(&kept, directions.clone(), &self.tree, &self.centre, limit);
+            let smaller = (lambda * factor).max(LEAST_LAMBDA.min(lambda));
+            let next = Equations::new(&along, self.settings.degree)?.solve(smaller, Some(&kept))?;
+            let found = reproject(&next, &along);
+            let found_rms = root_mean_square(&found.1);
+            if !(found_rms < rms) || crossing(&next).is_some() {
+                factor = factor.sqrt();
+                if factor > LAST_FACTOR {
+                    break;
+                }
+                continue;
+            }
+            let gain = 1.0 - found_rms / rms;
+            (kept, lambda, rms) = (next, smaller, found_rms);
+            (directions, gaps) = found;
+            if gain < GAIN {
+                break;
+            }
+        }
+        Ok(Candidate {
+            coordinates: kept,
+            lambda,
+            rms,
+            max: gaps.iter().fold(0.0, |a: f64, b| a.max(*b)),
+            points: rows.points,
+        })
+    }
+}
+
+fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
