@@ -1,4 +1,4 @@
-//! Climbing in quality on one surface.
+//! Ascents: local maximisation of quality on one surface.
 
 mod bundle;
 mod climber;
@@ -16,37 +16,40 @@ use sph::Direction;
 /// One state of an ascent, for traces.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<'a> {
-    /// The directions of the contacts.
+    /// Directions of the contacts.
     pub directions: &'a [Direction],
-    /// Q there.
+    /// Q at these directions.
     pub quality: f64,
-    /// Slope of Q that is left, per radian: of the one gradient in the paper's ascent, of what all
-    /// deciding facets and limits allow in ours (see [`Ascent::stationarity`]); 0 at a maximum.
+    /// Slope of Q that remains, per radian; 0 at a maximum. The paper's ascent reports the norm of
+    /// its one gradient. Our ascent reports the slope that all near-active facets and limits allow
+    /// (see [`Ascent::stationarity`]).
     pub stationarity: f64,
 }
 
-/// Where an ascent ended.
+/// The result of an ascent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ascent {
-    /// The directions of the contacts at the end.
+    /// Directions of the contacts at the end.
     pub directions: Vec<Direction>,
     /// Q at the start.
     pub start_quality: f64,
     /// Q at the end.
     pub quality: f64,
-    /// Q at the end, or minus the distance from force closure where the grasp is open.
+    /// Q at the end; for an open grasp minus its distance from force closure.
     pub margin: f64,
-    /// Slope of Q left at the end, per radian: the norm of the gradient in the paper's ascent; in
-    /// ours |u|/ρ for the u that maximises the least of the linearised facets less |u|²/2ρ within
-    /// the limits, ρ = 0.01 (the gradient of the Moreau envelope). 0 exactly at a maximum.
+    /// Slope of Q that remains at the end, per radian; exactly 0 at a maximum.
     ///
-    /// Q of friction pyramids is discontinuous where their frames are
-    /// ([`Quality::discontinuities`]). Those across which the climb found Q to fall count as limits,
-    /// so this is the slope on the side where the grasp is: 0 also where Q has no maximum but a
-    /// supremum at a discontinuity.
+    /// The paper's ascent reports the norm of the gradient. Our ascent reports |u|/ρ for the u that
+    /// maximises (the least linearised facet) − |u|²/2ρ within the limits, with ρ = 0.01: the
+    /// gradient of the Moreau envelope.
+    ///
+    /// Under friction pyramids Q is discontinuous where their frames are
+    /// ([`Quality::discontinuities`]). A discontinuity across which the ascent found Q to fall
+    /// counts as a limit, so this is the slope on the side where the grasp is. It is therefore also
+    /// 0 where Q has a supremum at a discontinuity and not a maximum.
     ///
     /// [`Quality::discontinuities`]: crate::Quality::discontinuities
     pub stationarity: f64,
-    /// Qualities computed on the way.
+    /// Number of qualities computed.
     pub evaluations: usize,
 }

@@ -1,4 +1,5 @@
-//! Coordinates of contacts: the paper's (θ,φ), and tangent vectors that know no poles.
+//! Coordinates of contacts: the paper's (θ,φ), and tangent vectors, which have no singularity at
+//! the poles.
 
 use nalgebra::Vector2;
 use sph::direction::{log, retract, tangent_frame};
@@ -15,9 +16,9 @@ pub fn to_angles(directions: &[Direction]) -> Vec<f64> {
 
 /// The directions of a list of angles.
 ///
-/// Angles outside [0, π] × [0, 2π) are taken as they are: p(θ,φ) is defined for all reals, so an
-/// ascent that steps over a pole (θ < 0 or θ > π) goes on along the same great circle on the far
-/// side. The paper does not say what it does there; this is our reading.
+/// Angles outside [0, π] × [0, 2π) are not wrapped, since p(θ,φ) is defined for all reals. An
+/// ascent that steps over a pole (θ < 0 or θ > π) therefore continues along the same great circle
+/// on the far side. The paper does not state what it does there; this is our reading.
 pub fn from_angles(angles: &[f64]) -> Vec<Direction> {
     angles.chunks_exact(2).map(from_pair).collect()
 }

@@ -1,4 +1,4 @@
-//! Hard limits on where contacts may be.
+//! Hard constraints on the positions of contacts.
 
 use grasp::QualityError;
 use nalgebra::Vector3;
@@ -9,52 +9,52 @@ use sph::direction::{log, retract};
 use crate::objective::Objective;
 use crate::quality::{LinearPieces, Quality, dot, in_frame, moved};
 
-/// The directions p with axis·p ≥ least_cosine: a half-space of directions at 0, a cone above it,
-/// the outside of a cone below it.
+/// The directions p with axis·p ≥ least_cosine: a half-space at 0, a cone for positive values, the
+/// outside of a cone for negative ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cap {
-    /// Middle of the cap.
+    /// Central direction of the cap.
     pub axis: Direction,
-    /// Cosine of its opening angle, in [−1, 1].
+    /// Cosine of the opening angle, in [−1, 1].
     pub least_cosine: f64,
 }
 
-/// What every grasp of an ascent must keep. The default asks for nothing.
+/// What every state of an ascent must satisfy. The default has no constraints.
 #[derive(Clone, Debug, Default)]
 pub struct Constraints {
     /// Least distance between any two contacts, metres.
     pub least_separation: Option<f64>,
-    /// Largest distance between any two contacts, metres: what a hand can span.
+    /// Largest distance between any two contacts, metres: the span of a hand.
     pub largest_separation: Option<f64>,
-    /// The allowed part of the surface: every contact's direction is in all of these.
+    /// The allowed part of the surface: the direction of every contact lies in all of these caps.
     pub caps: Vec<Cap>,
-    /// Force closure must hold under this objective too. With [`Objective::with_friction`] and a
-    /// smaller μ it is a margin of the friction cones.
+    /// An objective under which the grasp must be force-closed too. [`Objective::with_friction`]
+    /// with a smaller μ makes this a margin of the friction cones.
     pub closed_under: Option<Objective>,
 }
 
-/// Why no ascent can start.
+/// Why an ascent cannot start.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConstraintError {
-    /// A limit is no usable number.
+    /// A constraint is not a usable number.
     #[error("{name} is {value}; expected {expected}")]
     Limit {
-        /// Which one.
+        /// Name of the constraint.
         name: &'static str,
         /// Its value.
         value: f64,
         /// What it should be.
         expected: &'static str,
     },
-    /// No moves near the start satisfy the limits of place together.
+    /// Separations and caps cannot be satisfied together near the start.
     #[error("the start cannot be moved inside the limits: {name} is still missed by {by}")]
     Unreachable {
-        /// The limit missed most.
+        /// Name of the most violated constraint.
         name: &'static str,
-        /// By how much: metres for distances, a cosine for caps.
+        /// Size of the violation: metres for distances, a cosine for caps.
         by: f64,
     },
-    /// Nothing near the start is closed under the second objective.
+    /// No grasp reachable from the start is closed under the second objective.
     #[error("the start is not closed under the friction margin, by {by}, and no way leads there")]
     FrictionMargin {
         /// Distance from closure.
@@ -62,29 +62,29 @@ pub enum ConstraintError {
     },
 }
 
-/// Rounds of moving back into the limits.
+/// Largest number of rounds of moving contacts back inside.
 const ROUNDS: usize = 80;
-/// Move of each contact where slopes of the surface mislead, radians.
+/// Move of each contact when the slopes of the surface do not lead inside, radians.
 const STEP_AROUND: f64 = 0.03;
-/// Moves go this share of a limit's scale inside it, so that they end.
+/// Moves end this share of a constraint's scale inside it, so that the repair terminates.
 const INSIDE: f64 = 1e-6;
 /// Largest move of one repair, radians.
 const REPAIR_STEP: f64 = 0.3;
 
 const LARGEST: &str = "the largest separation";
 
-/// One limit at a place: slack ≥ 0 and its slope.
+/// One constraint at a state: slack ≥ 0 and its slope.
 struct Limit {
     name: &'static str,
     slack: f64,
-    /// What a small violation is measured against.
+    /// The size relative to which a violation is measured.
     scale: f64,
-    /// Contacts and the derivative of the slack by each one's move.
+    /// Index of a contact and the derivative of the slack by its move.
     by_move: [(usize, Vector3<f64>); 2],
 }
 
 impl Constraints {
-    /// Whether anything is asked for at all.
+    /// Whether there are no constraints.
     pub fn is_empty(&self) -> bool {
         self.least_separation.is_none()
             && self.largest_separation.is_none()
@@ -92,7 +92,10 @@ impl Constraints {
             && self.closed_under.is_none()
     }
 
-    /// Checks the numbers.
+    /// Checks that the numbers are usable.
+    ///
+    /// # Errors
+    /// [`ConstraintError::Limit`] with the first constraint that is not.
     pub fn validate(&self) -> Result<(), ConstraintError> {
         let bad = |name, value, expected| {
             Err(ConstraintError::Limit {
@@ -126,15 +129,19 @@ impl Constraints {
         }
     }
 
-    /// Whether contacts keep the limits of place: separations and caps.
+    /// Whether contacts satisfy the separations and caps; force closure is not tested.
     pub fn allow(&self, surface: &impl Surface, directions: &[Direction]) -> bool {
         (0..self.count(directions.len())).all(|k| self.limit(surface, directions, k).slack >= 0.0)
     }
 
-    /// Contacts moved into the limits of place, each violated one in turn along its slope.
+    /// Moves contacts until they satisfy the separations and caps, correcting each violated one in
+    /// turn along its slope.
     ///
-    /// Contacts that already keep them come back unchanged. Which grasp is found depends on where
-    /// the start is; it is near, not nearest.
+    /// Contacts that satisfy them are returned unchanged. The result is near the start but not the
+    /// nearest solution.
+    ///
+    /// # Errors
+    /// [`ConstraintError::Unreachable`] with the most violated constraint.
     pub fn repair(
         &self,
         surface: &impl Surface,
@@ -145,7 +152,10 @@ impl Constraints {
         Ok(here)
     }
 
-    /// [`Constraints::repair`] where the contacts are; after an error they are anywhere.
+    /// [`Constraints::repair`] in place; after an error the directions are unspecified.
+    ///
+    /// # Errors
+    /// As [`Constraints::repair`].
     pub fn repair_in_place(
         &self,
         surface: &impl Surface,
@@ -182,7 +192,7 @@ impl Constraints {
         }
     }
 
-    /// Every limit as a linear function of the contacts' moves, for the model of a step.
+    /// Every constraint as a linear function of the contacts' moves, for the model of a step.
     pub(crate) fn linearise<S: Surface>(
         &mut self,
         surface: &S,
@@ -205,7 +215,7 @@ impl Constraints {
         Ok(())
     }
 
-    /// Whether contacts are closed under the second objective, where there is one.
+    /// Whether contacts are closed under the second objective; true if there is none.
     pub(crate) fn closed<S: Surface>(
         &mut self,
         surface: &S,
@@ -217,7 +227,8 @@ impl Constraints {
         }
     }
 
-    /// Number of limits of place on some contacts: of each contact and cap, then of each pair.
+    /// Number of separations and caps for this many contacts: first every cap of every contact,
+    /// then every pair.
     fn count(&self, contacts: usize) -> usize {
         let of_a_pair = usize::from(self.least_separation.is_some())
             + usize::from(self.largest_separation.is_some());
@@ -225,7 +236,7 @@ impl Constraints {
         self.caps.len() * contacts + of_a_pair * pairs
     }
 
-    /// Limit k of these contacts.
+    /// Constraint k of these contacts.
     fn limit(&self, surface: &impl Surface, directions: &[Direction], k: usize) -> Limit {
         let of_caps = self.caps.len() * directions.len();
         if k < of_caps {
@@ -253,7 +264,8 @@ impl Cap {
     }
 }
 
-/// The limit of one pair of contacts: at most `far` apart where that is given, else at least `least`.
+/// The constraint of one pair of contacts: at most `far` apart if that is given, else at least
+/// `least`.
 fn of_pair(
     surface: &impl Surface,
     directions: &[Direction],
@@ -304,8 +316,9 @@ impl Limit {
         }
     }
 
-    /// Moves a pair along the sphere, together for the largest separation and apart for the least one: bumps of
-    /// the surface can trap the way along slopes.
+    /// Moves a pair of contacts along the great circle between them: together for the largest
+    /// separation, apart for the least one. Moves along slopes alone can end in a local extremum of
+    /// a bumpy surface.
     fn step_around(&self, directions: &mut [Direction]) {
         let [(i, _), (j, _)] = self.by_move;
         if i == j {
@@ -324,12 +337,13 @@ impl Limit {
         (directions[i], directions[j]) = (towards(&p, &q), towards(&q, &p));
     }
 
-    /// The shortest move that, to first order, takes the slack just above 0.
+    /// The shortest move that, to first order, makes the slack just positive.
     fn step_inside(&self, directions: &mut [Direction]) {
         let mut slopes = self.by_move.map(|(i, v)| in_frame(&directions[i], &v));
         let square = |slopes: &[[f64; 2]; 2]| slopes.iter().map(|s| dot(s, s)).sum::<f64>();
         if square(&slopes) == 0.0 {
-            // Contacts in one place, or at the far end of a cap's axis: any way out will do.
+            // The slope vanishes for coinciding contacts and opposite a cap's axis: any direction
+            // reduces the violation.
             slopes = [[1.0, 0.0], [0.0, 1.0]];
         }
         let square = square(&slopes);

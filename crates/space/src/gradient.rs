@@ -9,8 +9,11 @@ use crate::point::contact_on;
 
 /// Forward differences of Q in the chart (θ,φ): (Q(x+δeᵢ) − Q(x))/δ (Sec. IV-D).
 ///
-/// `contacts` are those at `angles` and `here` their Q; they come back unchanged. One quality an
-/// angle; only the contact that moves is realised again.
+/// `contacts` are those at `angles`, and `here` is their Q; both are unchanged on return. Costs one
+/// quality per angle; only the contact that moves is realised again.
+///
+/// # Errors
+/// A quality cannot be computed.
 pub fn forward_differences(
     surface: &impl Surface,
     angles: &[f64],

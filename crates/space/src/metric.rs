@@ -1,4 +1,4 @@
-//! The two metrics of Sec. III-C: on grasps, and on shapes with grasps.
+//! The two metrics of Sec. III-C: on grasps, and on shapes together with grasps.
 
 use grasp::{ContactCounts, Grasp};
 use shape::{RadialShape, SphericalShape, algebra};
@@ -17,9 +17,13 @@ pub enum MetricError {
     Contacts(#[from] ContactCounts),
 }
 
-/// w d(f, f′) + (1−w) d(g, g′), with d(f, f′) = ‖β−β′‖ and d(g, g′) the largest change of a
-/// contact, a normal or the centre ([`grasp::distance`]). w ∈ [0, 1]; metres and unit normals are
-/// added as they are, as in the paper.
+/// w d(f, f′) + (1−w) d(g, g′) with w ∈ [0, 1].
+///
+/// d(f, f′) = ‖β−β′‖, and d(g, g′) is the largest change of a contact, a normal or the centre
+/// ([`grasp::distance`]). As in the paper, metres and unit normals are added without scaling.
+///
+/// # Errors
+/// The weight is outside [0, 1], or the numbers of contacts differ.
 pub fn distance(
     weight: f64,
     (shape_a, grasp_a): (&RadialShape, &Grasp),
@@ -34,6 +38,9 @@ pub fn distance(
 }
 
 /// The same on M^sph × (S²)^m, with d(f, f′) = (∫ |f−f′|²)^{1/2}.
+///
+/// # Errors
+/// As [`distance`].
 pub fn distance_spherical(
     weight: f64,
     (shape_a, grasp_a): (&SphericalShape, &Grasp),

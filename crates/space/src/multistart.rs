@@ -1,11 +1,12 @@
-//! Starts of a multistart search: a low-discrepancy sequence around a grasp, the same in every run.
+//! Starts of a multistart search: a deterministic low-discrepancy sequence around a grasp.
 
 use sph::Direction;
 use std::f64::consts::TAU;
 
 use crate::quality::moved;
 
-/// The k-th of a sequence of directions around given ones, each moved by at most `spread` radians.
+/// The k-th of a sequence of grasps around a given one; each contact moves by at most `spread`
+/// radians.
 ///
 /// The R₂ sequence (powers of the plastic number) fills the discs evenly.
 pub(crate) fn nearby(directions: &[Direction], k: usize, spread: f64) -> Vec<Direction> {

@@ -16,29 +16,29 @@ use self::pyramids::Pyramids;
 use self::realised::Realised;
 use crate::resolved::ResolvedConvention;
 
-/// Facets that are linearised, the weakest first.
+/// Largest number of linearised facets; those with the smallest offset come first.
 const FACETS: usize = 40;
 
-/// How far above Q facets are linearised: the others are found by rejected steps.
+/// Facets with an offset up to this much above Q are linearised; rejected steps find the others.
 fn band(quality: f64) -> f64 {
     0.06 * quality.max(0.0) + 1e-3
 }
 
-/// Q of contacts on a surface: the convention with everything the surface decides filled in.
+/// Q of contacts on a surface, under a convention resolved on that surface.
 #[derive(Clone, Debug)]
 pub struct Objective {
     evaluator: Evaluator,
-    /// For round cones.
+    /// The pyramids that linearise Q under round cones; `None` for other conventions.
     pyramids: Option<Pyramids>,
     realised: Realised,
-    /// The margin computed last, and where.
+    /// The margin computed last and its arguments.
     last: Option<Margin>,
     at: Vec<Direction>,
-    /// Scratch of linearisations.
+    /// Memory for linearisations.
     facets: Vec<ActiveFacet>,
 }
 
-/// A resolved convention with the workspace in which qualities under it are computed and counted.
+/// A resolved convention, and the workspace that computes and counts qualities under it.
 #[derive(Clone, Debug)]
 struct Evaluator {
     resolved: ResolvedConvention,
@@ -84,7 +84,7 @@ impl Objective {
         Self::of(ResolvedConvention::new(convention, surface, object_origin))
     }
 
-    /// Q under a convention that is resolved already.
+    /// Q under a convention that is already resolved.
     pub fn of(resolved: ResolvedConvention) -> Self {
         Self {
             pyramids: Pyramids::of(resolved.convention()),
@@ -100,8 +100,8 @@ impl Objective {
         }
     }
 
-    /// The same quality with another friction coefficient: what is still closed under a smaller one
-    /// has that much of its friction cones to spare.
+    /// The same quality with another friction coefficient. A grasp that is closed under a smaller
+    /// coefficient keeps a margin to its friction cones.
     pub fn with_friction(&self, friction: f64) -> Self {
         Self::of(self.evaluator.resolved.with_friction(friction))
     }
@@ -121,9 +121,10 @@ impl Objective {
         self.evaluator.evaluations
     }
 
-    /// Forgets the grasps before: the answers that follow do not depend on them, to the last bit.
+    /// Discards the warm start, so that later results do not depend on earlier grasps, to the last
+    /// bit.
     ///
-    /// Otherwise a search goes on from the last one ([`Workspace::with_warm_start`]).
+    /// Without this call a search continues from the last grasp ([`Workspace::with_warm_start`]).
     pub fn forget(&mut self) {
         self.evaluator.workspace.forget();
         if let Some(pyramids) = &mut self.pyramids {
@@ -132,7 +133,7 @@ impl Objective {
         self.last = None;
     }
 
-    /// The full answer for a list of contacts.
+    /// Q of a list of contacts, with its certificate.
     ///
     /// # Errors
     /// As [`grasp::epsilon`].
@@ -140,7 +141,7 @@ impl Objective {
         self.evaluator.epsilon(contacts)
     }
 
-    /// Q, or minus the distance from force closure, with the facet that decides.
+    /// Q, or minus the distance from force closure, with the facet that attains it.
     ///
     /// # Errors
     /// As [`grasp::margin`].
@@ -148,7 +149,8 @@ impl Objective {
         self.evaluator.margin(contacts)
     }
 
-    /// The facets whose offset is within `band` of Q, the nearest first; none for an open grasp.
+    /// The facets whose offset is within `band` of Q, the smallest offset first; empty for an open
+    /// grasp.
     ///
     /// # Errors
     /// As [`grasp::near_active_facets`].
@@ -161,7 +163,7 @@ impl Objective {
         self.evaluator.near_active_facets(contacts, band, facets)
     }
 
-    /// How a facet's offset changes with the contacts and their normals.
+    /// Derivatives of a facet's offset by the positions and normals of the contacts.
     ///
     /// # Errors
     /// As [`grasp::facet_gradient`].
@@ -177,7 +179,8 @@ impl Objective {
         Ok(grasp::facet_gradient(&model, facet, frame, gradient)?)
     }
 
-    /// Q ≥ 0 of contacts; 0 when they are not force-closed, whatever the convention prints then.
+    /// Q ≥ 0 of contacts; 0 if they are not force-closed, whatever value the convention has for
+    /// that case.
     ///
     /// # Errors
     /// As [`Objective::epsilon`].

@@ -31,8 +31,11 @@ pub struct Path<'a> {
 }
 
 impl Path<'_> {
-    /// γ(t), t ∈ [0, 1]. It is in M^rad × (S²)^m by Lemma 3.2. Extra contacts of the longer end
-    /// are left out.
+    /// γ(t), t ∈ [0, 1]. It is in M^rad × (S²)^m by Lemma 3.2. If one end has more contacts than
+    /// the other, the extra ones are left out.
+    ///
+    /// # Errors
+    /// The shapes cannot be combined.
     pub fn at(&self, t: f64) -> Result<ModuliPoint<RadialShape>, SpaceError> {
         let directions: Vec<Direction> = self
             .from

@@ -1,4 +1,4 @@
-//! Points of the moduli space and the grasps they stand for.
+//! Points of the moduli space and their grasps.
 
 use grasp::{Contact, Grasp};
 use nalgebra::Point3;
@@ -17,7 +17,7 @@ pub struct ModuliPoint<S> {
 impl<S: Surface> ModuliPoint<S> {
     /// g(f, p) = (c₁, …, c_m, n₁, …, n_m, z) with cᵢ = f(pᵢ) and nᵢ the inward normal there.
     ///
-    /// z is given, since conventions differ on it; see [`crate::Objective`].
+    /// The centre z is an argument, since conventions differ on it; see [`crate::Objective`].
     pub fn grasp(&self, centre: Point3<f64>) -> Grasp {
         Grasp {
             contacts: contacts_on(&self.surface, &self.directions),

@@ -1,4 +1,4 @@
-//! What a climb needs to know of a quality, and qualities given as plain functions.
+//! The interface between a quality and an ascent, and qualities given as plain functions.
 
 use grasp::QualityError;
 use nalgebra::Vector3;
@@ -7,8 +7,8 @@ use sph::direction::{retract, tangent_frame};
 
 /// Linear models excess_j + g_j·u of functions of the contacts' tangent moves u.
 ///
-/// u has two numbers per contact, radians, in the frame of [`sph::direction::tangent_frame`] at each
-/// contact. Flat storage, kept between steps.
+/// u has two numbers per contact, radians, in the frame of [`sph::direction::tangent_frame`] at
+/// each contact. The storage is flat and reused from step to step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LinearPieces {
     dimension: usize,
@@ -17,26 +17,27 @@ pub struct LinearPieces {
 }
 
 impl LinearPieces {
-    /// Forgets all pieces; the next ones have two numbers per contact.
+    /// Removes all pieces; later ones have two numbers per contact.
     pub fn reset(&mut self, contacts: usize) {
         self.dimension = 2 * contacts;
         self.excess.clear();
         self.slopes.clear();
     }
 
-    /// Forgets all but the first pieces.
+    /// Keeps only the first `pieces` pieces.
     pub(crate) fn truncate(&mut self, pieces: usize) {
         self.excess.truncate(pieces);
         self.slopes.truncate(pieces * self.dimension);
     }
 
-    /// Makes room for pieces of the present dimension.
+    /// Reserves memory for pieces of the present dimension.
     pub(crate) fn reserve(&mut self, pieces: usize) {
         self.excess.reserve(pieces);
         self.slopes.reserve(pieces * self.dimension);
     }
 
-    /// Adds a piece: its value above that of the least one, and its slope, zeros to be filled in.
+    /// Adds a piece with this excess (its value above that of the least piece). Returns its slope,
+    /// all zeros, for the caller to fill in.
     pub fn push(&mut self, excess: f64) -> &mut [f64] {
         let start = self.slopes.len();
         self.excess.push(excess);
@@ -56,12 +57,12 @@ impl LinearPieces {
         self.excess.len()
     }
 
-    /// Whether there is no piece.
+    /// Whether there are no pieces.
     pub fn is_empty(&self) -> bool {
         self.excess.is_empty()
     }
 
-    /// Numbers in a move, two a contact.
+    /// Length of a move: two numbers per contact.
     pub fn dimension(&self) -> usize {
         self.dimension
     }
@@ -81,14 +82,21 @@ impl LinearPieces {
 
 /// A quality of contacts on surfaces of type `S` that an ascent can raise.
 ///
-/// Implemented by [`crate::Objective`], exactly, and by [`ByDifferences`] for any function. The
-/// surface comes with every call, so that one quality can follow a deforming surface.
+/// [`crate::Objective`] implements it with exact slopes, and [`ByDifferences`] for any function.
+/// The surface is an argument of every call, so that one quality can serve a deforming surface.
 pub trait Quality<S> {
-    /// The quality at the directions of contacts. A negative value says how far an open grasp is from closure.
+    /// The quality at the directions of contacts. For an open grasp a negative value is minus its
+    /// distance from closure.
+    ///
+    /// # Errors
+    /// The quality cannot be computed.
     fn value(&mut self, surface: &S, directions: &[Direction]) -> Result<f64, QualityError>;
 
-    /// The functions that decide, or are about to, linearised there; the deciding one first,
-    /// with excess 0. `pieces` is emptied before.
+    /// Linearises the active and near-active functions at the directions; the active one comes
+    /// first, with excess 0. `pieces` is cleared first.
+    ///
+    /// # Errors
+    /// The quality cannot be computed.
     fn linearise(
         &mut self,
         surface: &S,
@@ -96,8 +104,11 @@ pub trait Quality<S> {
         pieces: &mut LinearPieces,
     ) -> Result<(), QualityError>;
 
-    /// The slope of the deciding function alone, two numbers per contact; called where
+    /// Writes the slope of the active function, two numbers per contact. Called where
     /// [`Quality::value`] was called last.
+    ///
+    /// # Errors
+    /// The quality cannot be computed.
     fn slope(
         &mut self,
         surface: &S,
@@ -105,14 +116,14 @@ pub trait Quality<S> {
         slope: &mut [f64],
     ) -> Result<(), QualityError>;
 
-    /// The value from which a grasp counts as stable; 0, which every closed grasp passes, by default.
+    /// The value above which a grasp is stable. The default is 0, which every closed grasp exceeds.
     fn stable_above(&self) -> f64 {
         0.0
     }
 
-    /// Where the quality is discontinuous: the boundaries of the region in which `side` is, as functions
-    /// of the moves from `directions`, positive in that region, linearised. `out` is emptied before;
-    /// their number and order depend on nothing but the region. None by default.
+    /// Linearises the discontinuities of the quality: the boundaries of the region that contains
+    /// `side`, as functions of the moves from `directions` that are positive inside. `out` is
+    /// cleared first. Their number and order depend only on the region. The default has none.
     fn discontinuities(
         &mut self,
         surface: &S,
@@ -124,17 +135,17 @@ pub trait Quality<S> {
         out.reset(directions.len());
     }
 
-    /// Forgets what earlier values left behind: what follows depends on nothing but its arguments.
+    /// Discards cached state, so that later results depend only on their arguments.
     fn forget(&mut self) {}
 
-    /// Values computed so far.
+    /// Number of values computed so far.
     fn evaluations(&self) -> usize;
 }
 
 /// Any function Q(surface, contacts), with slopes by central differences.
 ///
-/// Costs 4m values a slope for m contacts. The function should be positive for grasps worth having
-/// and continuous; a value that is not a number is never accepted.
+/// Costs 4m values per slope for m contacts. The function should be continuous, and positive for
+/// grasps of interest. A NaN is never accepted.
 #[derive(Clone, Debug)]
 pub struct ByDifferences<F> {
     function: F,
@@ -143,7 +154,8 @@ pub struct ByDifferences<F> {
 }
 
 impl<F> ByDifferences<F> {
-    /// Q and the step of the differences, radians; 1e-5 suits functions with ten good digits.
+    /// A function and the step of its differences, radians; 1e-5 suits functions accurate to ten
+    /// digits.
     pub fn new(function: F, delta: f64) -> Self {
         Self {
             function,
@@ -197,13 +209,13 @@ impl<S, F: FnMut(&S, &[Direction]) -> f64> Quality<S> for ByDifferences<F> {
     }
 }
 
-/// The slope of a 3-D derivative along the tangent frame of a contact.
+/// The components of a derivative in R³ in the tangent frame of a contact.
 pub(crate) fn in_frame(p: &Direction, by_move: &Vector3<f64>) -> [f64; 2] {
     let (e1, e2) = tangent_frame(p);
     [e1.dot(by_move), e2.dot(by_move)]
 }
 
-/// The direction after a tangent move in its frame.
+/// The direction after a move u in its tangent frame.
 pub(crate) fn moved(p: &Direction, u: &[f64]) -> Direction {
     let (e1, e2) = tangent_frame(p);
     retract(p, &(e1 * u[0] + e2 * u[1]))

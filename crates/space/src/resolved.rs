@@ -1,19 +1,19 @@
-//! A convention with everything filled in that one surface decides.
+//! A convention resolved on one surface.
 
 use grasp::{CentreRule, Convention, TorqueLength};
 use nalgebra::Point3;
 use shape::Surface;
 use sph::direction::even_directions;
 
-/// Points of the surface among which the farthest from the centre is sought.
+/// Number of evenly spread points of the surface among which the farthest from the centre is found.
 const EXTENT_DIRECTIONS: usize = 2_000;
 
-/// A [`Convention`] resolved on one surface: the centre of torques is a point and the torque length
-/// is a number of metres.
+/// A [`Convention`] resolved on one surface: the centre of torques is a point, and the torque
+/// length is in metres.
 ///
-/// A convention is a rule (torques "about the centre of mass", "per largest distance"), and the same
-/// rule gives another centre and length on every surface. The two are different types, so that a
-/// resolved convention is never taken for the rule on another surface.
+/// A convention is a rule (torques "about the centre of mass", "per largest distance"), and the
+/// same rule gives another centre and length on every surface. The types differ, so that a resolved
+/// convention cannot be used as the rule on another surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResolvedConvention {
     convention: Convention,
@@ -25,9 +25,9 @@ impl ResolvedConvention {
     ///
     /// `object_origin` is the origin of the user's frame in the centred frame, metres; conventions
     /// with [`CentreRule::ObjectOrigin`] and [`CentreRule::Given`] take torques about it. The mean of
-    /// the cloud is the origin of the centred frame. A torque length of `MaxContactDistance` becomes
-    /// the largest distance of the surface from the centre, as the systems that use it define it:
-    /// the largest of 2,000 evenly spread points.
+    /// the cloud is the origin of the centred frame. A torque length of `MaxContactDistance`
+    /// becomes the largest distance of the surface from the centre, as in the systems that use it,
+    /// taken over 2,000 evenly spread points.
     pub fn new(rule: &Convention, surface: &impl Surface, object_origin: &Point3<f64>) -> Self {
         let centre = match rule.centre {
             CentreRule::CloudMean => Point3::origin(),
@@ -45,7 +45,7 @@ impl ResolvedConvention {
         Self { convention, centre }
     }
 
-    /// The convention, its torque length in metres.
+    /// The convention with its torque length in metres.
     pub fn convention(&self) -> &Convention {
         &self.convention
     }

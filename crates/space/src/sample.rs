@@ -26,8 +26,10 @@ pub fn uniform_direction(rng: &mut impl Rng) -> Direction {
 /// A shape with Gaussian noise of standard deviation `sigma` (metres) on a band of β, and uniform
 /// contacts on it.
 ///
-/// The noisy shape is certified like any other; a sample that leaves M^rad is the error, so callers
-/// can count such samples and draw again.
+/// The noisy shape is certified like any other.
+///
+/// # Errors
+/// The sample is not in M^rad, so that callers can count such samples and draw again.
 pub fn perturbed(
     shape: &RadialShape,
     band: Range<usize>,
@@ -43,13 +45,13 @@ pub fn perturbed(
     })
 }
 
-/// Where contacts are drawn.
+/// The distribution of contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ContactSampling<'a> {
-    /// This many, uniform on the sphere.
+    /// This many contacts, uniform on the sphere.
     Uniform(usize),
-    /// One around each of these, by a tangent vector with this standard deviation in both
-    /// coordinates, radians.
+    /// One contact around each of these directions, displaced by a tangent vector whose two
+    /// coordinates have this standard deviation, radians.
     Around(&'a [Direction], f64),
 }
 
@@ -70,10 +72,12 @@ impl ContactSampling<'_> {
     }
 }
 
-/// A point of M^sph × (S²)^m: noise on the same band of all three coordinates.
+/// A point of M^sph × (S²)^m, with noise on the same band of all three coordinates.
 ///
-/// The noisy surface is proved an immersion again ([`SphericalShape::immersion`]); a sample that is
-/// none is the error.
+/// The noisy surface is proved an immersion ([`SphericalShape::immersion`]).
+///
+/// # Errors
+/// The sample is not proved an immersion.
 pub fn perturbed_spherical(
     shape: &SphericalShape,
     band: Range<usize>,

@@ -1,4 +1,4 @@
-//! Carrying grasps from one shape to another (Sec. IV-E).
+//! Transfer of grasps from one shape to another (Sec. IV-E).
 
 mod continuation;
 mod jobs;
@@ -19,7 +19,7 @@ use crate::ascent::{Ascent, PaperAscent, Step};
 use crate::constraints::ConstraintError;
 use crate::objective::Objective;
 
-/// Why a transfer has no end.
+/// Why a transfer has no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TransferError {
     /// A quality could not be computed.
@@ -28,38 +28,38 @@ pub enum TransferError {
     /// The shapes could not be combined.
     #[error(transparent)]
     Deformation(#[from] SpaceError),
-    /// Nothing on the target keeps the limits, or they are no numbers.
+    /// No grasp on the target satisfies the constraints, or a constraint is not a usable number.
     #[error(transparent)]
     Constraints(#[from] ConstraintError),
 }
 
-/// A grasp that has arrived.
+/// The result of a transfer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transferred {
     /// The directions of the contacts on the target.
     pub directions: Vec<Direction>,
-    /// Q on the source, before anything moved.
+    /// Q on the source, before the transfer.
     pub start_quality: f64,
     /// Q on the target.
     pub quality: f64,
-    /// Qualities computed on the way.
+    /// Number of qualities computed.
     pub evaluations: usize,
-    /// Slope of Q that is left on the target, per radian ([`Ascent::stationarity`]); not measured
-    /// by the naive transfer.
+    /// Slope of Q that remains on the target, per radian ([`Ascent::stationarity`]); `None` for the
+    /// naive transfer, which does not measure it.
     pub stationarity: Option<f64>,
-    /// Why the grasp ended open; none for a closed one.
+    /// Why the grasp ended open; `None` for a closed one.
     pub open: Option<StillOpen>,
 }
 
 /// Why no closed grasp was found on the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StillOpen {
-    /// Distance of the best grasp from force closure, where the scheme measures it.
+    /// Distance of the best grasp from force closure; `None` if the scheme does not measure it.
     pub distance: Option<f64>,
-    /// The parameter of the curve at which closure was lost; none when the grasp was open from the
-    /// start or was never followed.
+    /// The parameter of the curve at which closure was lost. `None` if the grasp was open from the
+    /// start or was not followed.
     pub lost_at: Option<f64>,
-    /// Climbs made on the target.
+    /// Number of ascents on the target.
     pub climbs: usize,
 }
 
@@ -85,12 +85,12 @@ impl std::fmt::Display for StillOpen {
 pub struct TransferEnd<'a> {
     /// The surface, in its centred frame.
     pub surface: &'a RadialField,
-    /// The origin of this object's own cloud frame in its centred frame, metres; matters only to
-    /// conventions that take torques about it.
+    /// The origin of this object's own cloud frame in its centred frame, metres. It matters only
+    /// for conventions that take torques about it.
     pub object_origin: Point3<f64>,
 }
 
-/// A pair of objects between which grasps are carried, and how quality is measured.
+/// A pair of objects between which grasps are transferred, and the rule that measures quality.
 ///
 /// ```
 /// use grasp::Convention;
@@ -107,10 +107,9 @@ pub struct TransferEnd<'a> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// The convention is a rule: it is resolved on every shape γ(t) along the way, with the origin
-/// (1−t) o₁ + t o₂, so that qualities on the source belong to the source and those on the target to
-/// the target. The shapes along the way are made once per pair and number of intervals, when a scheme
-/// first asks for them.
+/// The convention is a rule. It is resolved on every shape γ(t), with the origin (1−t) o₁ + t o₂,
+/// so that the source's qualities refer to the source and the target's to the target. The shapes
+/// γ(k/n) are computed once per pair and n, when a scheme first requests them.
 #[derive(Debug)]
 pub struct Transfer<'a> {
     from: TransferEnd<'a>,
@@ -120,7 +119,7 @@ pub struct Transfer<'a> {
 }
 
 impl<'a> Transfer<'a> {
-    /// Prepares nothing yet: costs as little as its arguments.
+    /// A pair; no shape is computed yet.
     pub fn new(from: TransferEnd<'a>, to: TransferEnd<'a>, convention: &'a Convention) -> Self {
         Self {
             from,
@@ -130,18 +129,18 @@ impl<'a> Transfer<'a> {
         }
     }
 
-    /// The known object.
+    /// The object that the grasps come from.
     pub fn source(&self) -> &'a RadialField {
         self.from.surface
     }
 
-    /// The object on which grasps end.
+    /// The object that grasps are transferred to.
     pub fn target(&self) -> &'a RadialField {
         self.to.surface
     }
 
-    /// The shapes γ(k/n) = (1−k/n) r₁ + (k/n) r₂ for k = 0 … n, prepared for ascents; n is at
-    /// least 1. They are kept: a second call returns the same shapes.
+    /// The shapes γ(k/n) = (1−k/n) r₁ + (k/n) r₂ for k = 0 … n, prepared for ascents; n is at least
+    /// 1. They are cached: a second call returns the same shapes.
     ///
     /// # Errors
     /// The shapes cannot be combined.
@@ -158,7 +157,7 @@ impl<'a> Transfer<'a> {
         Ok(stations)
     }
 
-    /// The shape γ(t), made anew.
+    /// The shape γ(t), computed at every call.
     fn station(&self, t: f64) -> Result<RadialField, TransferError> {
         RadialField::deformation(self.from.surface, self.to.surface, t).map_err(TransferError::from)
     }
@@ -169,7 +168,7 @@ impl<'a> Transfer<'a> {
         Point3::from(from.coords * (1.0 - t) + to.coords * t)
     }
 
-    /// Q on the shape γ(t).
+    /// The objective that measures Q on the shape γ(t).
     fn objective(&self, t: f64, on: &RadialField) -> Objective {
         Objective::new(self.convention, on, &self.origin(t))
     }
@@ -197,10 +196,10 @@ impl<'a> Transfer<'a> {
     }
 }
 
-/// The paper's transfer: γ(0), γ(1/n), …, γ(1), an ascent at each (Sec. IV-E).
+/// The paper's transfer: an ascent on each of γ(0), γ(1/n), …, γ(1) (Sec. IV-E).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PaperTransfer {
-    /// n; 10 in the paper, so eleven stations.
+    /// Number n of intervals; 10 in the paper, that is, eleven stations.
     pub intervals: usize,
     /// The ascent at each station; 100 steps in the paper.
     pub ascent: PaperAscent,
@@ -216,7 +215,7 @@ impl PaperTransfer {
         },
     };
 
-    /// Carries one grasp from the source to the target.
+    /// Transfers one grasp from the source to the target.
     ///
     /// # Errors
     /// As [`PaperTransfer::carry_traced`].
@@ -228,7 +227,7 @@ impl PaperTransfer {
         self.carry_traced(transfer, directions, |_, _| {})
     }
 
-    /// The same; `trace` sees every state with the parameter t of its shape.
+    /// The same; `trace` receives every state with the parameter t of its shape.
     ///
     /// # Errors
     /// The shapes cannot be combined, or a quality cannot be computed.
@@ -251,7 +250,7 @@ impl PaperTransfer {
     }
 }
 
-/// Climbs at every station in turn, each from where the one before ended.
+/// Climbs on every station in turn, each time from the end of the ascent before.
 fn carry_over(
     transfer: &Transfer,
     stations: &[RadialField],

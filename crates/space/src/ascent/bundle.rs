@@ -1,15 +1,16 @@
-//! The step of a proximal bundle method: raise the least of several linear functions.
+//! The step of a proximal bundle method: maximises the least of several linear functions.
 
 use crate::quality::{LinearPieces, dot, norm};
 
-/// max over u of min_j (excess_j + g_j·u) − |u|²/2ρ, with slack_k + a_k·u ≥ 0 for every limit.
+/// Maximises min_j (excess_j + g_j·u) − |u|²/2ρ over u, subject to slack_k + a_k·u ≥ 0 for every
+/// limit.
 ///
-/// Its dual is min over λ in the simplex and ν ≥ 0 of
-/// Σ λ_j excess_j + Σ ν_k slack_k + ρ/2 |Σ λ_j g_j + Σ ν_k a_k|², and u = ρ (Σ λ_j g_j + Σ ν_k a_k).
+/// The dual minimises Σ λ_j excess_j + Σ ν_k slack_k + ρ/2 |Σ λ_j g_j + Σ ν_k a_k|² over λ in the
+/// simplex and ν ≥ 0; then u = ρ (Σ λ_j g_j + Σ ν_k a_k).
 ///
-/// Solved by active sets, as Wolfe's nearest point is: the pieces and limits that carry weight are
-/// few (dimension + 1), the best weights of a given set solve a linear system, and each exchange
-/// lowers the dual, so it ends.
+/// Solved by an active-set method, as in Wolfe's algorithm for the nearest point. At most dimension
+/// + 1 pieces and limits have positive weight. The best weights of a given set solve a linear
+/// system. Each exchange lowers the dual, so the method terminates.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bundle {
     active: Vec<Active>,
@@ -19,7 +20,7 @@ pub(super) struct Bundle {
     moves: Vec<f64>,
 }
 
-/// A piece or a limit that carries weight.
+/// A piece or a limit with positive weight.
 #[derive(Clone, Copy, Debug)]
 struct Active {
     limit: bool,
@@ -27,7 +28,7 @@ struct Active {
     weight: f64,
 }
 
-/// The problem that is solved.
+/// The functions, the limits and the step parameter ρ of one step.
 #[derive(Clone, Copy)]
 struct Problem<'a> {
     pieces: &'a LinearPieces,
@@ -45,24 +46,26 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// What the best move promises.
+/// The gain that the model predicts, and its slope.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Promise {
     /// min_j (excess_j + g_j·u) at the move.
     pub(super) gain: f64,
-    /// |Σ λ_j g_j + Σ ν_k a_k|: the slope that all deciding pieces and limits allow; 0 at a maximum.
+    /// |Σ λ_j g_j + Σ ν_k a_k|: the slope that the active pieces and limits allow; 0 at a maximum.
     pub(super) slope: f64,
 }
 
-/// Exchanges; a dozen suffice in six dimensions.
+/// Largest number of exchanges; a dozen suffice in six dimensions.
 const ROUNDS: usize = 200;
-/// Costs this share below the active ones are equal to them.
+/// Relative tolerance of costs: a cost less than this share below the active ones counts as equal.
 const EQUAL: f64 = 1e-9;
-/// Added to the diagonal, as a share of it: sets with one weight too many have a solution, far away.
+/// Ridge on the diagonal, relative to it. It gives a set with one weight too many a solution (far
+/// away).
 const RIDGE: f64 = 1e-12;
 
 impl Bundle {
-    /// Room for moves of this many numbers: more weights than these plus one never stay.
+    /// Reserves memory for moves of `dimension` numbers. At most `dimension` + 1 weights are
+    /// positive.
     pub(super) fn reserve(&mut self, dimension: usize) {
         let most = dimension + 8;
         self.active.reserve(most);
@@ -72,7 +75,8 @@ impl Bundle {
         self.moves.reserve(dimension);
     }
 
-    /// The maximiser, shortened to `largest_move` if it is longer. One piece or more.
+    /// Solves for the maximiser, shortens it to `largest_move` if it is longer, and returns the
+    /// predicted gain. Needs at least one piece.
     pub(super) fn solve(
         &mut self,
         pieces: &LinearPieces,
@@ -96,12 +100,12 @@ impl Bundle {
         Promise { gain, slope }
     }
 
-    /// u of the last solution, radians, two numbers a contact.
+    /// u of the last solution, radians, two numbers per contact.
     pub(super) fn moves(&self) -> &[f64] {
         &self.moves
     }
 
-    /// The same, to be overwritten.
+    /// The same numbers, for the caller to overwrite.
     pub(super) fn moves_mut(&mut self) -> &mut Vec<f64> {
         &mut self.moves
     }
@@ -136,7 +140,8 @@ impl Bundle {
         }
     }
 
-    /// The piece or limit that lowers the dual most for its weight, if any does.
+    /// The inactive piece or limit whose weight lowers the dual at the highest rate, if one lowers
+    /// it.
     fn cheapest(&self, problem: &Problem) -> Option<Active> {
         let cost = |limit: bool, index: usize| {
             let (constant, slope) = problem.get(limit, index);
@@ -169,7 +174,8 @@ impl Bundle {
         self.active.iter().any(same)
     }
 
-    /// Moves the weights to the best ones of the set, dropping on the way those that reach zero.
+    /// Moves the weights to the best ones of the active set and removes those that reach zero on
+    /// the way.
     fn settle(&mut self, problem: &Problem) {
         while self.best_weights(problem) {
             let (mut step, mut out) = (1.0, None);
@@ -191,8 +197,9 @@ impl Bundle {
         }
     }
 
-    /// Equal costs for the active pieces, none for the active limits, pieces of sum one; false when
-    /// rounding leaves no such weights.
+    /// Solves for the weights at which active pieces have equal cost, active limits have zero cost,
+    /// and the weights of the pieces sum to one. Returns false if rounding makes the system
+    /// unsolvable.
     fn best_weights(&mut self, problem: &Problem) -> bool {
         let count = self.active.len();
         let width = count + 2;
@@ -219,8 +226,8 @@ impl Bundle {
     }
 }
 
-/// Elimination with partial pivoting of `size` rows of `size` + 1 numbers; false for a singular or
-/// overflowing system.
+/// Gaussian elimination with partial pivoting of `size` rows of `size` + 1 numbers. Returns false
+/// for a singular or overflowing system.
 fn solve_in_place(rows: &mut [f64], size: usize, out: &mut Vec<f64>) -> bool {
     let width = size + 1;
     for k in 0..size {
@@ -306,7 +313,7 @@ mod tests {
 
     #[test]
     fn many_pieces_and_limits_are_solved_to_rounding() {
-        // Costs of the pieces and limits that carry weight are equal, of the others higher.
+        // Active pieces and limits have equal cost; the others cost more.
         for seed in 0..200 {
             let number = |i: usize, k: usize| ((seed * 97 + i * 13 + k * 7 + i * k) as f64).sin();
             let mut pieces = LinearPieces::default();
@@ -321,7 +328,7 @@ mod tests {
                 };
                 let slope: Vec<f64> = (0..6).map(|k| number(i, k)).collect();
                 pieces.push(excess).copy_from_slice(&slope);
-                // Pieces that say the same twice.
+                // Duplicate pieces.
                 if i % 5 == 0 {
                     pieces.push(excess).copy_from_slice(&slope);
                 }
@@ -339,7 +346,7 @@ mod tests {
             for k in 0..limits.len() {
                 assert!(limits.at(k, &u) >= -1e-8, "seed {seed}");
             }
-            // The dual's value is that of the move: nothing is left to gain.
+            // Strong duality: the dual's value equals that of the move.
             let weighted: f64 = bundle
                 .active
                 .iter()

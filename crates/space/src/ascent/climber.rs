@@ -11,27 +11,28 @@ use super::settings::MonotoneAscent;
 use crate::constraints::Constraints;
 use crate::quality::{LinearPieces, Quality, dot, moved};
 
-/// Share of the promised gain that a step must bring.
+/// Least share of the predicted gain that a step must bring to be accepted.
 const ACCEPT: f64 = 0.1;
-/// First move, radians.
+/// Length of the first move, radians.
 const FIRST_MOVE: f64 = 0.1;
-/// Pieces of rejected steps are added up to this many.
+/// Largest number of pieces; models of rejected steps are added up to this number.
 const MOST_PIECES: usize = 96;
-/// Models of rejected steps have at least this excess for a step of a radian, growing with its square.
+/// Least excess of the model of a rejected step of length d radians, as a multiple of d².
 const LOCALITY: f64 = 0.5;
-/// Factor of ρ when they are forgotten.
+/// Factor of ρ after the models of rejected steps are discarded.
 const AFTER_FORGETTING: f64 = 0.1;
-/// ρ of the stationarity that is reported.
+/// ρ of the reported stationarity.
 const REPORT_RHO: f64 = 0.01;
 
-/// What became of a step: with the share of the promise that was kept, or stopped by a new discontinuity.
+/// Result of a trial step. `Taken` and `Refused` hold the ratio of actual to predicted gain;
+/// `Discontinuity` means that the step crossed a discontinuity that was not active.
 enum Outcome {
     Taken(f64),
     Refused(f64),
     Discontinuity,
 }
 
-/// Where a climb stands, with everything that steps reuse.
+/// The state of an ascent, with the memory that its steps reuse.
 pub(super) struct Climber<'a, S, Q> {
     surface: &'a S,
     quality: &'a mut Q,
@@ -44,7 +45,8 @@ pub(super) struct Climber<'a, S, Q> {
     discontinuities: Discontinuities,
     bundle: Bundle,
     slope: Vec<f64>,
-    /// Pieces that were linearised here; the others come from rejected steps.
+    /// Number of leading pieces that were linearised at the current state; the others come from
+    /// rejected steps.
     own: usize,
 }
 
@@ -56,7 +58,7 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         start: Vec<Direction>,
     ) -> Result<Self, QualityError> {
         let value = quality.value(surface, &start)?;
-        // What is no number is worse than any: whatever a later climb finds replaces it.
+        // NaN counts as the worst value, so that any later state replaces it.
         let value = if value.is_nan() {
             f64::NEG_INFINITY
         } else {
@@ -81,7 +83,7 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         Ok(climber)
     }
 
-    /// Room for all that steps can need, so that none of them allocates.
+    /// Reserves all memory that steps can need, so that no step allocates.
     fn reserve(&mut self) {
         let contacts = self.here.len();
         for pieces in [&mut self.pieces, &mut self.limits] {
@@ -93,8 +95,8 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         self.slope.reserve(2 * contacts);
     }
 
-    /// Climbs until no slope, no gain or no steps are left, or until `enough`; `seen` gets every
-    /// state left behind and its slope.
+    /// Climbs until the slope or the predicted gain is below its threshold, the steps are used up,
+    /// or Q reaches `enough`. `seen` receives every state left behind and its slope.
     pub(super) fn climb(
         &mut self,
         settings: &MonotoneAscent,
@@ -116,13 +118,14 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
                 seen(&self.here, self.value, step.slope);
             }
             if !(step.gain > settings.least_gain && step.slope > settings.stationarity) {
-                // Nothing to gain with this much freedom; with more there may be.
+                // No predicted gain at this ρ; a larger ρ may have one.
                 if rho < 1.0 && step.slope > settings.stationarity && !refused {
                     rho *= 8.0;
                     fresh = false;
                     continue;
                 }
-                // What rejected steps taught may hold only where they ended: less freedom without it.
+                // Models of rejected steps may hold only where those steps ended: discard them and
+                // lower ρ.
                 if self.pieces.len() > self.own {
                     self.pieces.truncate(self.own);
                     rho *= AFTER_FORGETTING;
@@ -131,7 +134,8 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
                 if retried && !self.cross_a_discontinuity(settings.least_gain)? {
                     break;
                 }
-                // A climb that began here would look around as far as this.
+                // Retry once with the first move's length and no active discontinuity, as an ascent
+                // from here would.
                 if !retried {
                     self.discontinuities.deactivate();
                     self.limit()?;
@@ -156,7 +160,8 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         Ok(())
     }
 
-    /// The slope that is left here, at one ρ for all grasps, by the facets of this place alone.
+    /// The slope that remains here by the facets linearised here, with [`REPORT_RHO`] for all
+    /// grasps.
     pub(super) fn stationarity(&mut self) -> f64 {
         self.pieces.truncate(self.own);
         if self.pieces.is_empty() {
@@ -167,7 +172,7 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
             .slope
     }
 
-    /// Moves if the gain is a fair share of the promise.
+    /// Moves to the trial state if the gain is at least [`ACCEPT`] of the predicted one.
     fn try_step(&mut self, step: &Promise) -> Result<Outcome, QualityError> {
         self.look_at_moves();
         self.discontinuities
@@ -190,7 +195,7 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         );
         match crossed {
             Crossed::Nothing => {}
-            // What holds beyond a jump says nothing about this side.
+            // A model from beyond the discontinuity does not describe this side.
             Crossed::New => {
                 self.limit()?;
                 return Ok(Outcome::Discontinuity);
@@ -207,7 +212,7 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         }))
     }
 
-    /// The trial state after the bundle's moves.
+    /// Computes the trial state: the current one after the bundle's moves.
     fn look_at_moves(&mut self) {
         let moves = self.bundle.moves();
         self.there.clear();
@@ -215,7 +220,7 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         self.there.extend(moved_here.map(|(p, u)| moved(p, u)));
     }
 
-    /// Takes the trial state.
+    /// Makes the trial state the current one.
     fn arrive(&mut self, value: f64) -> Result<(), QualityError> {
         self.discontinuities.deactivate_if_crossed(
             self.surface,
@@ -228,7 +233,8 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         self.linearise()
     }
 
-    /// Goes just across the first near discontinuity beyond which the quality is higher.
+    /// Moves just across the first near discontinuity beyond which the quality is higher. Returns
+    /// whether there is one.
     fn cross_a_discontinuity(&mut self, least_gain: f64) -> Result<bool, QualityError> {
         for at in 0..self.discontinuities.len() {
             if !self
@@ -250,7 +256,7 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         Ok(false)
     }
 
-    /// Whether the trial state keeps every limit, after a repair of what curvature took away.
+    /// Whether the trial state keeps every limit, after a repair of violations due to curvature.
     fn admitted(&mut self) -> Result<bool, QualityError> {
         if self.constraints.is_empty() {
             return Ok(true);
@@ -273,7 +279,7 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         self.limit()
     }
 
-    /// The limits of a step: those of the constraints, and the active discontinuities.
+    /// Linearises the limits of a step: the constraints and the active discontinuities.
     fn limit(&mut self) -> Result<(), QualityError> {
         self.constraints
             .linearise(self.surface, &self.here, &mut self.limits)?;
@@ -281,8 +287,8 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
         Ok(())
     }
 
-    /// Adds the model at a rejected state, seen from here: what decided there may not have been
-    /// among the pieces.
+    /// Adds the linear model at a rejected state, expressed here: the facet that is least there may
+    /// be missing from the pieces.
     fn remember(&mut self, value: f64) -> Result<(), QualityError> {
         self.slope.clear();
         self.slope.resize(2 * self.here.len(), 0.0);
@@ -292,8 +298,8 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
             let carried = carry_back(&self.here[i], &self.there[i], &self.slope[2 * i..]);
             self.slope[2 * i..2 * i + 2].copy_from_slice(&carried);
         }
-        // The quality is not concave: a model that would cut off the present state counts as much as
-        // it misses, and one from far away is no constraint here.
+        // Q is not concave, so this cut may exclude the current state. Its excess is its error
+        // here, and at least LOCALITY · distance², so that a distant model does not bind.
         let moves = self.bundle.moves();
         let missed = (value - self.value - dot(&self.slope, moves)).abs();
         let excess = missed.max(LOCALITY * dot(moves, moves));
@@ -309,7 +315,8 @@ impl<'a, S: Surface, Q: Quality<S>> Climber<'a, S, Q> {
     }
 }
 
-/// Components at p of a slope given in the frame at q, carried along the great circle between them.
+/// Components at p of a slope given in the frame at q, by parallel transport along the great circle
+/// between them.
 fn carry_back(p: &Direction, q: &Direction, slope: &[f64]) -> [f64; 2] {
     let (a, b) = tangent_frame(q);
     let v = a * slope[0] + b * slope[1];

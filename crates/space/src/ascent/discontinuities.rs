@@ -1,21 +1,22 @@
-//! Where the quality is discontinuous, since the frame of a friction pyramid is.
+//! Discontinuities of the quality, which lie where the frame of a friction pyramid is
+//! discontinuous.
 //!
-//! A climb may cross a discontinuity where that raises the quality. Where it does not, the quality
-//! has a supremum at the discontinuity, which becomes an active constraint of the step. Then a slope
-//! that is left points across active discontinuities only, and the stationarity is that of the side
-//! on which the climb is.
+//! An ascent may cross a discontinuity if that raises the quality. If it does not, the quality has
+//! a supremum at the discontinuity, which then becomes an active constraint of the step. Any slope
+//! that remains points across active discontinuities only, so the stationarity is that of the side
+//! on which the ascent is.
 
 use sph::Direction;
 
 use crate::quality::{LinearPieces, Quality, dot, moved};
 
-/// Steps towards an active discontinuity end this far from it, radians.
+/// Distance from an active discontinuity at which steps towards it end, radians.
 const INSIDE: f64 = 1e-6;
-/// Corrections of a step that curvature has taken across a discontinuity.
+/// Largest number of corrections of a step that curvature has taken across a discontinuity.
 const CORRECTIONS: usize = 3;
-/// At the end of a climb discontinuities up to this far away are tried, radians.
+/// Distance up to which discontinuities are tried at the end of an ascent, radians.
 const FAR: f64 = 0.05;
-/// How far beyond a discontinuity a trial goes, radians.
+/// Distance beyond a discontinuity at which a trial state lies, radians.
 const BEYOND: f64 = 1e-3;
 
 /// All discontinuities around a state, and which of them are active constraints.
@@ -23,7 +24,7 @@ const BEYOND: f64 = 1e-3;
 pub(super) struct Discontinuities {
     all: LinearPieces,
     active: Vec<bool>,
-    /// The same discontinuities, seen from a trial state.
+    /// The same discontinuities, linearised at a trial state.
     there: LinearPieces,
 }
 
@@ -31,14 +32,14 @@ pub(super) struct Discontinuities {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Crossed {
     Nothing,
-    /// Some that were active already.
+    /// Only discontinuities that were active already.
     Active,
-    /// Some that were not active, and are now.
+    /// At least one that was not active, and is now.
     New,
 }
 
 impl Discontinuities {
-    /// Room for the discontinuities of some contacts.
+    /// Reserves memory for the discontinuities of this many contacts.
     pub(super) fn reserve(&mut self, contacts: usize) {
         for pieces in [&mut self.all, &mut self.there] {
             pieces.reset(contacts);
@@ -47,7 +48,7 @@ impl Discontinuities {
         self.active.reserve(2 * contacts);
     }
 
-    /// Finds the discontinuities around a state; those that were active stay active.
+    /// Computes the discontinuities around a state; those that were active stay active.
     pub(super) fn around<S>(
         &mut self,
         surface: &S,
@@ -62,12 +63,12 @@ impl Discontinuities {
         self.all.len()
     }
 
-    /// None is active any more.
+    /// Deactivates all discontinuities.
     pub(super) fn deactivate(&mut self) {
         self.active.fill(false);
     }
 
-    /// None is active any more if one lies between two states.
+    /// Deactivates all discontinuities if one lies between two states.
     pub(super) fn deactivate_if_crossed<S>(
         &mut self,
         surface: &S,
@@ -81,7 +82,7 @@ impl Discontinuities {
         }
     }
 
-    /// Makes those active that lie between two states.
+    /// Activates every discontinuity between two states, and reports what was crossed.
     pub(super) fn activate_crossed<S>(
         &mut self,
         surface: &S,
@@ -105,7 +106,7 @@ impl Discontinuities {
         crossed
     }
 
-    /// Brings a trial state back to this side of the active ones.
+    /// Moves a trial state back to this side of the active discontinuities.
     pub(super) fn correct<S>(
         &mut self,
         surface: &S,
@@ -138,7 +139,7 @@ impl Discontinuities {
         }
     }
 
-    /// Adds the active ones to limits.
+    /// Adds the active discontinuities to `limits`.
     pub(super) fn write_active(&self, limits: &mut LinearPieces) {
         for (at, _) in self.active.iter().enumerate().filter(|(_, s)| **s) {
             let (slack, slope) = self.all.get(at);
@@ -147,7 +148,8 @@ impl Discontinuities {
         }
     }
 
-    /// The shortest moves that go just across a discontinuity; false where it is far away.
+    /// The shortest moves that go just across discontinuity `at`; false if it is farther than
+    /// [`FAR`].
     pub(super) fn moves_across(&self, at: usize, moves: &mut Vec<f64>) -> bool {
         let (slack, slope) = self.all.get(at);
         let square = dot(slope, slope);
@@ -167,7 +169,7 @@ mod tests {
     use nalgebra::{UnitVector3, Vector3};
     use sph::direction::angle;
 
-    /// Q is discontinuous where contacts cross the plane x = 0.
+    /// Q is discontinuous where a contact crosses the plane x = 0.
     struct Plane;
 
     impl Quality<()> for Plane {

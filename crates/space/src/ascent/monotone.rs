@@ -1,9 +1,11 @@
-//! Our ascent: never down, no poles, aware of every facet that is about to decide.
+//! Our ascent: monotone, without coordinate singularities, and with all near-active facets in its
+//! model.
 //!
-//! Q is the least of many smooth facet offsets, so at a maximum several tie and a step along the
-//! gradient of one lowers another. Each step therefore maximises the least of the near-active
-//! facets' linear models, less |u|²/2ρ (a proximal bundle step), over all contacts' tangent
-//! moves u within the limits; a move is taken only if Q rises, and ρ follows how well the model did.
+//! Q is the least of many smooth facet offsets. At a maximum several are equal, and a step along
+//! the gradient of one lowers another. So each step maximises (the least of the near-active facets'
+//! linear models) − |u|²/2ρ over the tangent moves u of all contacts within the limits: a proximal
+//! bundle step. A move is accepted only if Q rises, and ρ is adapted to the ratio of actual to
+//! predicted gain.
 
 use grasp::QualityError;
 use shape::Surface;
@@ -16,28 +18,31 @@ use crate::constraints::{ConstraintError, Constraints};
 use crate::multistart::nearby;
 use crate::quality::Quality;
 
-/// Why a climb within constraints has no result.
+/// Why an ascent within constraints has no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AscentError {
     /// A quality could not be computed.
     #[error(transparent)]
     Quality(#[from] QualityError),
-    /// The constraints are no numbers, or the start cannot be brought inside them.
+    /// A constraint is not a usable number, or the start cannot be moved inside the constraints.
     #[error(transparent)]
     Constraints(#[from] ConstraintError),
 }
 
-/// How far the first restart may move a contact, radians; the last one moves up to π/2.
+/// Largest move of a contact in the first restart, radians; the last restart allows π/2.
 const FIRST_SPREAD: f64 = 0.4;
-/// Starts that one restart looks at; the best climbs.
+/// Number of starts that one restart evaluates; it climbs from the best.
 const PROBES: usize = 4;
 
 impl MonotoneAscent {
-    /// Climbs from `start`; `trace` sees every state taken. The quality of the result is never
-    /// below that of the start.
+    /// Climbs from `start`; `trace` receives every accepted state. The quality of the result is
+    /// never below that of the start.
     ///
-    /// Works from grasps that are not force-closed too: there the signed margin rises first, and
-    /// where that ends open, nearby starts are tried. The qualities reported are 0 for open grasps.
+    /// The start need not be force-closed: from an open grasp the signed margin is raised first,
+    /// and if that ends open, nearby starts are tried. The reported quality of an open grasp is 0.
+    ///
+    /// # Errors
+    /// A quality cannot be computed.
     pub fn climb<S: Surface>(
         &self,
         surface: &S,
@@ -48,11 +53,16 @@ impl MonotoneAscent {
         self.climb_inside(surface, start, quality, &mut Constraints::default(), trace)
     }
 
-    /// The same within hard limits: no state of the trace, the first included, violates one.
+    /// The same within hard constraints: every state of the trace, including the first, keeps all
+    /// of them.
     ///
-    /// A start outside the limits of place is first moved inside ([`Constraints::repair`]); one that
-    /// is not closed under [`Constraints::closed_under`] first climbs there. Where neither is
-    /// possible there is an error. Q is not below that of the start so repaired.
+    /// A start that violates separations or caps is first moved inside ([`Constraints::repair`]). A
+    /// start that is not closed under [`Constraints::closed_under`] first climbs in that objective.
+    /// Q of the result is not below that of the start so repaired.
+    ///
+    /// # Errors
+    /// A constraint is not a usable number, the start cannot be moved inside the constraints, or a
+    /// quality cannot be computed.
     pub fn climb_within<S: Surface>(
         &self,
         surface: &S,
@@ -70,7 +80,7 @@ impl MonotoneAscent {
         Ok(self.climb_inside(surface, &inside, quality, &mut constraints, trace)?)
     }
 
-    /// Climbs the second objective alone until it is closed.
+    /// Climbs in the second objective alone until the grasp is closed under it.
     fn close<S: Surface>(
         &self,
         surface: &S,
@@ -146,7 +156,7 @@ impl MonotoneAscent {
         Ok(best)
     }
 
-    /// The best of a few starts around the first one, within the limits.
+    /// The best of [`PROBES`] starts around `start`, within the constraints.
     fn probe<S: Surface>(
         &self,
         surface: &S,

@@ -1,4 +1,4 @@
-//! The fixed-step ascent of the paper, to the letter.
+//! The fixed-step ascent of the paper, unchanged.
 
 use grasp::QualityError;
 use shape::Surface;
@@ -12,28 +12,34 @@ use crate::point::contacts_on;
 
 /// x_{n+1} = x_n + rate · clamp(∇Q(x_n)), clamp(v) = v/max(1, ‖v‖), x = (θ₁,φ₁,…) (Sec. IV-D).
 ///
-/// It can end below its start; that is the paper's own finding, kept for comparison.
+/// Q can be lower at the end than at the start. The paper reports this too; the ascent is kept for
+/// comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PaperAscent {
     /// Number of steps; 1000 in Sec. IV-D, 100 per station in Sec. IV-E.
     pub steps: usize,
-    /// Forward-difference step δ in radians; 1e-5.
+    /// Forward-difference step δ, radians; 1e-5 in the paper.
     pub delta: f64,
-    /// Step length in radians; 0.01.
+    /// Step length, radians; 0.01 in the paper.
     pub rate: f64,
 }
 
 impl PaperAscent {
-    /// The ascent of Sec. IV-D: 1000 steps of 0.01 radians, slopes from differences of 1e-5 radians.
+    /// The ascent of Sec. IV-D: 1000 steps of 0.01 radians, gradients by differences of 1e-5
+    /// radians.
     pub const PAPER: Self = Self {
         steps: 1000,
         delta: 1e-5,
         rate: 0.01,
     };
 
-    /// Climbs from `start`; `trace` sees every state, the start and the end included.
+    /// Climbs from `start`; `trace` receives every state, including the start and the end.
     ///
-    /// Costs 1 + 2m qualities a step. A start that is not force-closed has no gradient and stays.
+    /// Costs 1 + 2m qualities per step. A start that is not force-closed has no gradient, so it is
+    /// also the end.
+    ///
+    /// # Errors
+    /// A quality cannot be computed.
     pub fn climb(
         &self,
         surface: &impl Surface,
@@ -66,7 +72,7 @@ impl PaperAscent {
                 stationarity: norm,
             });
             if norm == 0.0 {
-                // Every later step would compute the same: no gradient, no motion.
+                // The gradient is zero, so every later step would leave the grasp where it is.
                 break;
             }
             for (x, g) in angles.iter_mut().zip(&gradient) {

@@ -1,23 +1,23 @@
-//! How our ascent steps and when it stops.
+//! Settings of the monotone ascent.
 
-/// Settings of the monotone ascent.
+/// Step lengths, stopping rules and restarts of the monotone ascent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MonotoneAscent {
-    /// Most steps tried, taken or not, from one start.
+    /// Largest number of trial steps from one start, accepted or rejected.
     pub steps: usize,
-    /// Longest move of all contacts together in one step, radians.
+    /// Largest norm of the moves of all contacts together in one step, radians.
     pub largest_move: f64,
-    /// Stop when no direction promises a slope above this, per radian.
+    /// The ascent stops when the model's slope is at most this, per radian.
     pub stationarity: f64,
-    /// Stop when the model promises less than this.
+    /// The ascent stops when the predicted gain is at most this.
     pub least_gain: f64,
-    /// New starts when a climb ends open, or from an open start below [`crate::Quality::stable_above`]:
-    /// around where it began, ever farther.
+    /// Largest number of restarts, at growing distance around the first start. They are made when
+    /// an ascent ends open, or when it began open and ended below [`crate::Quality::stable_above`].
     pub restarts: usize,
 }
 
 impl Default for MonotoneAscent {
-    /// Enough steps for household objects: some 80 qualities an ascent.
+    /// Enough steps for household objects: about 80 qualities per ascent.
     fn default() -> Self {
         Self {
             steps: 200,

@@ -5,16 +5,17 @@ use grasp::{
 };
 use nalgebra::{Point3, Vector3};
 
-/// Edges of the pyramids that model round cones.
+/// Number of edges of the pyramids that model round cones; they cut off about 1 % of the cone.
 const PYRAMID_EDGES: usize = 24;
-/// A facet with a weight below this has the foot of its plane far outside.
+/// Least weight of a facet's carriers. Below it the foot of the facet's plane lies far outside the
+/// facet.
 const FAR_FROM_FOOT: f64 = -0.3;
 
-/// Inscribed pyramids in place of round cones in the model of a step.
+/// Inscribed pyramids in place of round cones, used only in the linear model of a step.
 ///
-/// The hull of round cones has no facets: the one face that the ball touches moves along it with the
-/// grasp. The facets of inscribed pyramids that are nearly the nearest linearise that move, with an
-/// error of the 1 per cent that the pyramids cut off.
+/// The hull of round cones has no facets: the face that the ball touches moves along the hull with
+/// the grasp. The nearest facets of inscribed pyramids linearise that motion. The error is the 1 %
+/// that the pyramids cut off.
 #[derive(Clone, Debug)]
 pub(super) struct Pyramids {
     convention: Convention,
@@ -22,7 +23,7 @@ pub(super) struct Pyramids {
 }
 
 impl Pyramids {
-    /// None for a convention that has pyramids itself.
+    /// `None` for a convention that has pyramids itself.
     pub(super) fn of(convention: &Convention) -> Option<Self> {
         matches!(convention.edges, Edges::Round { .. }).then(|| Self {
             convention: Convention {
@@ -33,14 +34,14 @@ impl Pyramids {
         })
     }
 
-    /// The facets near the nearest one; returns the offset of that one.
+    /// Writes the facets near the nearest one to `facets`; returns the offset of the nearest.
     pub(super) fn near_facets(
         &mut self,
         contacts: &[Contact],
         centre: &Point3<f64>,
         facets: &mut Vec<ActiveFacet>,
     ) -> Result<f64, QualityError> {
-        // Edges that turn with the grasp: no direction of space is preferred.
+        // The edges turn with the grasp, so that no direction of space is preferred.
         let along = contacts
             .iter()
             .enumerate()
@@ -55,7 +56,8 @@ impl Pyramids {
         let nearest = grasp::margin(&model, &mut self.workspace)?.value;
         let band = super::band(nearest);
         grasp::near_active_facets(&model, band, &mut self.workspace, facets)?;
-        // Whether a facet far from its own foot is found depends on the way of the search.
+        // Whether such a facet is found depends on the path of the search, so all of them are
+        // removed.
         facets.retain(|f| f.carriers().iter().all(|c| c.weight >= FAR_FROM_FOOT));
         Ok(nearest)
     }

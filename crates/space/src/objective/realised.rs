@@ -1,4 +1,4 @@
-//! Contacts of directions on a surface, and derivatives by those directions.
+//! The contacts at given directions, and derivatives by those directions.
 
 use grasp::{ActiveFacet, Contact, Edges, FrameRule, Gradient, GraspModel, QualityError};
 use shape::{Differential, Surface};
@@ -8,7 +8,7 @@ use crate::point::contact_on;
 use crate::quality::in_frame;
 use crate::resolved::ResolvedConvention;
 
-/// The contacts at some directions, with their derivatives where those were asked for.
+/// The contacts at some directions, with their derivatives if those were requested.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Realised {
     pub(super) contacts: Vec<Contact>,
@@ -17,14 +17,14 @@ pub(super) struct Realised {
 }
 
 impl Realised {
-    /// f and n at the directions.
+    /// Computes f and n at the directions.
     pub(super) fn place(&mut self, surface: &impl Surface, directions: &[Direction]) {
         self.contacts.clear();
         self.contacts
             .extend(directions.iter().map(|p| contact_on(surface, p)));
     }
 
-    /// f, n and their derivatives at the directions.
+    /// Computes f, n and their derivatives at the directions.
     pub(super) fn differentiate(&mut self, surface: &impl Surface, directions: &[Direction]) {
         self.slopes.clear();
         self.contacts.clear();
@@ -38,8 +38,8 @@ impl Realised {
         }
     }
 
-    /// The slope of one facet's offset along the tangent frames of the directions
-    /// at which the contacts were differentiated last.
+    /// The slope of one facet's offset in the tangent frames of the directions at which the
+    /// contacts were differentiated last.
     pub(super) fn chain(
         &mut self,
         resolved: &ResolvedConvention,
@@ -47,7 +47,7 @@ impl Realised {
         facet: &ActiveFacet,
         slope: &mut [f64],
     ) -> Result<(), QualityError> {
-        // The pyramids in round cones have no frames of their own.
+        // The pyramids that model round cones have no tangent frame.
         let frame = match resolved.convention().edges {
             Edges::Polygon(_) => FrameRule::Tangent,
             Edges::Round { .. } => FrameRule::Transported,

@@ -1,4 +1,4 @@
-//! Linear models of the epsilon quality by the directions of the contacts.
+//! Linear models of the epsilon quality as a function of the contacts' directions.
 
 use grasp::{Edges, Margin, QualityError};
 use shape::Surface;
@@ -7,10 +7,10 @@ use sph::Direction;
 use super::{FACETS, Objective, band};
 use crate::quality::{LinearPieces, Quality, in_frame};
 
-/// The epsilon quality, and minus the distance from closure of open grasps; slopes by the chain rule
-/// dQ = Σᵢ (df(pᵢ)ᵀ ∂Q/∂cᵢ + dn(pᵢ)ᵀ ∂Q/∂nᵢ) · uᵢ through the facets that are nearly the nearest.
+/// The epsilon quality, or minus the distance from closure for an open grasp. Slopes follow from
+/// the chain rule dQ = Σᵢ (df(pᵢ)ᵀ ∂Q/∂cᵢ + dn(pᵢ)ᵀ ∂Q/∂nᵢ) · uᵢ for every near-active facet.
 ///
-/// An objective belongs to the surface that it was made on.
+/// An objective may only be used on the surface that it was resolved on.
 impl<S: Surface> Quality<S> for Objective {
     fn value(&mut self, surface: &S, directions: &[Direction]) -> Result<f64, QualityError> {
         self.margin_at(surface, directions)
@@ -117,7 +117,7 @@ impl Objective {
         Ok(margin)
     }
 
-    /// The margin at the directions and the derivatives of the contacts there.
+    /// Computes the margin at the directions and the derivatives of the contacts there.
     fn differentiate(
         &mut self,
         surface: &impl Surface,

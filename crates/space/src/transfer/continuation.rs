@@ -1,4 +1,4 @@
-//! Our transfer: a continuation along γ that looks where it steps, and starts again when it must.
+//! Our transfer: a continuation along γ with adaptive steps and restarts.
 
 use grasp::QualityError;
 use shape::RadialField;
@@ -12,56 +12,58 @@ use crate::multistart::nearby;
 use crate::objective::Objective;
 use crate::quality::Quality;
 
-/// A monotone ascent at each station of γ, a longer one on the target, and other ways to get there.
+/// A monotone ascent on each station of γ, a longer one on the target, and recovery from poor ends.
 ///
-/// A continuation can follow an optimum into a poor corner, while the naive transfer may land near
-/// a good one; both are climbed on the target, poor ends are recovered from, and the best of all
-/// is returned, so the result is never below the naive transfer.
+/// A continuation can follow an optimum into a poor local maximum, while the naive transfer may
+/// start near a good one. So the target is climbed from both, poor ends are recovered from, and the
+/// best is returned. The result is never below the naive transfer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Continuation {
-    /// n intervals, n + 1 stations.
+    /// Number n of intervals; there are n + 1 stations.
     pub intervals: usize,
-    /// The ascent at each station but the last.
+    /// The ascent on every station but the last.
     pub along: MonotoneAscent,
     /// The ascent on the target.
     pub at_end: MonotoneAscent,
-    /// When an interval is walked in two halves.
+    /// When an interval is divided into two halves.
     pub splitting: Splitting,
-    /// What is tried when the end is poor; nothing if absent.
+    /// What is tried when the end is poor; `None` for nothing.
     pub recovery: Option<Recovery>,
 }
 
-/// When an interval between stations is too long.
+/// When an interval between stations is halved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Splitting {
-    /// Times that an interval may be halved.
+    /// Largest number of times that an interval is halved.
     pub depth: usize,
-    /// Split when the quality after the ascent is below this share of that before the interval.
+    /// Split if the quality after the ascent is below this share of the quality before the
+    /// interval.
     pub least_kept: f64,
-    /// Split when the ascent carries a contact farther than this, radians.
+    /// Split if the ascent moves a contact farther than this, radians.
     pub longest_move: f64,
 }
 
-/// Starts around the naive transfer and around the best end, and another spacing of stations.
+/// Multistart around the naive transfer and around the best end, and a second continuation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recovery {
-    /// Recover when the quality is below this share of that on the source; ∞ for always.
+    /// Recover if the quality is below this share of the source's quality; ∞ for always.
     pub below: f64,
-    /// Starts that are looked at, one quality each.
+    /// Number of starts evaluated, at one quality each.
     pub probes: usize,
-    /// The best of them that climb.
+    /// Number of ascents, from the best of those starts.
     pub climbs: usize,
-    /// Largest move of a contact for a start, radians.
+    /// Largest move of a contact to a start, radians.
     pub spread: f64,
-    /// Intervals of a second continuation, when the end is still poor; none for 0.
+    /// Intervals of a second continuation, made if the end is still poor; 0 for none.
     pub intervals: usize,
-    /// Last climbs from close around the best end: pyramids of friction make Q jump where their
-    /// frames do, and a climb can stop at such a step.
+    /// Number of last ascents from close around the best end. Under friction pyramids Q is
+    /// discontinuous where their frames are, and an ascent can end at such a discontinuity.
     pub polish: usize,
 }
 
 impl Default for Continuation {
-    /// Four intervals with short ascents, then a full one; recovery from ends that lost a quarter.
+    /// Four intervals with short ascents, then a full one; recovery if more than a quarter of the
+    /// quality is lost.
     fn default() -> Self {
         let at_end = MonotoneAscent::default();
         Self {
@@ -93,7 +95,8 @@ impl Default for Continuation {
 }
 
 impl Continuation {
-    /// Always recovers, from more starts: some six times the qualities, for ends that nearby starts do not beat.
+    /// Always recovers, and from more starts. Costs about six times the qualities; for ends that
+    /// nearby starts rarely improve.
     pub fn thorough() -> Self {
         Self {
             recovery: Some(Recovery {
@@ -108,7 +111,7 @@ impl Continuation {
         }
     }
 
-    /// Carries one grasp from the source to the target.
+    /// Transfers one grasp from the source to the target.
     ///
     /// # Errors
     /// As [`Continuation::carry_traced`].
@@ -120,16 +123,17 @@ impl Continuation {
         self.carry_traced(transfer, directions, &Constraints::default(), |_, _| {})
     }
 
-    /// The same within hard limits, kept on every station and by everything that recovery tries;
-    /// `trace` sees (t, state) of the first continuation.
+    /// The same within hard constraints, which hold on every station and for everything that
+    /// recovery tries. `trace` receives (t, state) of the first continuation.
     ///
-    /// The start is first moved inside the limits on the source, and its quality is that of the moved
-    /// one. A station on which nothing near keeps them is passed without a climb.
-    /// [`Constraints::closed_under`] is resolved anew on every station, but keeps its torque length.
+    /// The start is first moved inside the constraints on the source; the start quality is that of
+    /// the moved grasp. A station near which no grasp satisfies the constraints is passed without
+    /// an ascent. [`Constraints::closed_under`] is resolved on every station, but keeps its torque
+    /// length.
     ///
     /// # Errors
-    /// The shapes cannot be combined, a quality cannot be computed, or nothing on the target keeps the
-    /// limits.
+    /// The shapes cannot be combined, a quality cannot be computed, or no grasp on the target
+    /// satisfies the constraints.
     pub fn carry_traced(
         &self,
         transfer: &Transfer,
@@ -141,7 +145,7 @@ impl Continuation {
         self.carry_inside(transfer, directions, constraints, quality_on, trace)
     }
 
-    /// [`Continuation::carry`] for any quality; `quality_on` prepares it on the shape γ(t).
+    /// [`Continuation::carry`] for any quality; `quality_on` constructs it on the shape γ(t).
     ///
     /// The convention of `transfer` is not used.
     ///
@@ -221,34 +225,34 @@ impl Continuation {
     }
 }
 
-/// Largest move of a contact before a last climb, radians.
+/// Largest move of a contact before a last ascent, radians.
 const POLISH_SPREAD: f64 = 0.1;
-/// Restarts of the last resort.
+/// Number of restarts of the last attempt.
 const LAST_RESTARTS: usize = 16;
 
-/// One transfer under way.
+/// One transfer in progress.
 struct Carrier<'a, F> {
     scheme: &'a Continuation,
     transfer: &'a Transfer<'a>,
     constraints: &'a Constraints,
-    /// Why a climb had no start within them.
+    /// Why an ascent had no start within the constraints.
     kept_out: Option<ConstraintError>,
     target: &'a RadialField,
     quality_on: F,
     evaluations: usize,
-    /// Climbs made on the target.
+    /// Number of ascents on the target.
     climbs: usize,
     lost_at: Option<f64>,
 }
 
-/// Where a continuation stands.
+/// The state of a continuation.
 struct Standing {
     t: f64,
     ascent: Ascent,
 }
 
 impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
-    /// Walks over the stations; the quality at the start and the end.
+    /// Follows the stations in order; returns the quality at the start and at the end.
     fn follow(
         &mut self,
         stations: &[RadialField],
@@ -267,7 +271,7 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
         Ok((start_quality, here.ascent))
     }
 
-    /// One interval, in halves where it is too long.
+    /// Advances over one interval, in two halves if it is too long.
     fn advance(
         &mut self,
         here: Standing,
@@ -277,7 +281,7 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
         trace: &mut impl FnMut(f64, &Step),
     ) -> Result<Standing, TransferError> {
         let splitting = &self.scheme.splitting;
-        // The states of a climb that is thrown away are no part of the trace.
+        // The states of a rejected ascent are not part of the trace.
         let mut seen: Vec<(Vec<Direction>, f64, f64)> = Vec::new();
         let keep = &mut |_: f64, step: &Step| {
             seen.push((step.directions.to_vec(), step.quality, step.stationarity));
@@ -285,7 +289,8 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
         let there = self.climb(t, station, &here.ascent.directions, keep)?;
         let lost = there.margin < splitting.least_kept * here.ascent.quality;
         let farthest = farthest(&here.ascent.directions, &there.directions);
-        // On a station where nothing near keeps the limits, halves would be no better.
+        // If no grasp near satisfies the constraints on a station, halving the interval does not
+        // help.
         let kept_out = there.margin == f64::NEG_INFINITY;
         if depth < splitting.depth && !kept_out && (lost || farthest > splitting.longest_move) {
             let middle = 0.5 * (here.t + t);
@@ -309,7 +314,7 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
         Ok(Standing { t, ascent: there })
     }
 
-    /// Climbs on the target from more contacts and keeps the better end.
+    /// Climbs on the target from further contacts and keeps the better end.
     fn keep_better(&mut self, best: &mut Ascent, from: &[Direction]) -> Result<(), TransferError> {
         let end = self.climb(1.0, self.target, from, &mut |_, _| {})?;
         if end.margin > best.margin {
@@ -347,7 +352,7 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
         Ok(())
     }
 
-    /// A second continuation with other stations.
+    /// A second continuation, with another number of stations.
     fn continue_again(
         &mut self,
         recovery: &Recovery,
@@ -362,7 +367,7 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
         Ok(())
     }
 
-    /// What an ascent does from an open start, with more patience.
+    /// Restarts as an ascent from an open start does, but more often.
     fn restart(
         &mut self,
         directions: &[Direction],
@@ -396,7 +401,8 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
         self.climb_by(&settings, t, station, from, &mut |step| trace(t, step))
     }
 
-    /// A climb within the limits; from where there are none it ends at once, worse than anything.
+    /// An ascent within the constraints. If no start satisfies them, the result is a grasp worse
+    /// than any other.
     fn climb_by(
         &mut self,
         settings: &MonotoneAscent,
@@ -426,7 +432,7 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
         Ok(ascent)
     }
 
-    /// The limits, with the second objective on a station.
+    /// The constraints, with the second objective resolved on a station.
     fn constraints_on(&self, t: f64, station: &RadialField) -> Constraints {
         let origin = self.transfer.origin(t);
         let second = self.constraints.closed_under.as_ref();
@@ -437,7 +443,7 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
     }
 }
 
-/// Largest angle between two lists of contacts, radians.
+/// Largest angle between corresponding contacts of two lists, radians.
 fn farthest(a: &[Direction], b: &[Direction]) -> f64 {
     a.iter()
         .zip(b)

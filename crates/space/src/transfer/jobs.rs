@@ -5,14 +5,14 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-/// One grasp to carry from one object to another.
+/// One grasp to transfer from one object to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Job {
     /// Index of the source.
     pub from: usize,
     /// Index of the target.
     pub to: usize,
-    /// Which grasp of the source.
+    /// Index of the grasp on the source.
     pub grasp: usize,
 }
 
@@ -28,26 +28,27 @@ pub fn all_pairs(grasps: &[usize]) -> Vec<Job> {
     jobs
 }
 
-/// How far a run is.
+/// Progress of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// Index of the job that was just done.
+    /// Index of the job that was just completed.
     pub job: usize,
-    /// Jobs done, those from before included.
+    /// Number of completed jobs, including those of earlier runs.
     pub done: usize,
-    /// Jobs in all.
+    /// Number of jobs.
     pub total: usize,
 }
 
-/// Does the jobs that have no result yet, over the threads of the caller's pool, and puts the
-/// results at the jobs' indices.
+/// Runs the jobs that have no result yet on the caller's thread pool, and stores each result at its
+/// job's index.
 ///
-/// `results` is what an earlier run left: shorter, or with gaps, or empty. After every job
-/// `progress` sees its result and may break, which cancels the run; then, as after an error, what
-/// was done stays in `results` and the next call goes on from there. A job depends on nothing but
-/// itself, so the results do not depend on the number of threads or on interruptions.
+/// `results` is the state that an earlier run left; it may be empty, shorter than `jobs`, or have
+/// gaps. After every job `progress` receives its result and may return `Break`, which cancels the
+/// run. After a cancellation or an error, completed results stay in `results` and the next call
+/// continues from there. Results do not depend on the number of threads or on interruptions.
 ///
-/// Errors: that of the first job, by index, among those that failed; no job begins after a failure.
+/// # Errors
+/// The error of the failed job with the lowest index. No job starts after a failure.
 pub fn run_jobs<J: Sync, R: Send, E: Send>(
     jobs: &[J],
     results: &mut Vec<Option<R>>,

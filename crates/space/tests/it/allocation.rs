@@ -1,4 +1,4 @@
-//! A step of an ascent does not touch the heap.
+//! A step of an ascent does not allocate.
 
 use grasp::Convention;
 use nalgebra::{Point3, Vector3};
@@ -10,7 +10,7 @@ use testkit::{CountingAllocator, allocations};
 #[global_allocator]
 static ALLOCATOR: CountingAllocator = CountingAllocator;
 
-/// Allocations of a climb of so many steps, and the steps taken.
+/// Number of allocations of an ascent of at most `steps` steps, and the number of steps taken.
 fn climb(
     steps: usize,
     surface: &RadialField,
@@ -52,7 +52,7 @@ fn a_longer_climb_allocates_no_more_than_a_shorter_one() {
         closed_under: None,
     };
     for constraints in [Constraints::default(), tight] {
-        // Scratch grows to what the longest climb needs.
+        // Memory grows to what the longest ascent needs.
         let (_, long) = climb(60, &surface, &start, &mut objective, &constraints);
         let (few, short) = climb(3, &surface, &start, &mut objective, &constraints);
         let (many, _) = climb(60, &surface, &start, &mut objective, &constraints);

@@ -16,7 +16,7 @@ use space::{
 use sph::Direction;
 use sph::direction::{angle, retract, tangent_frame};
 
-/// Quality that no choice of frame changes.
+/// A convention whose quality does not depend on a choice of frame.
 fn round() -> Convention {
     Convention {
         edges: Edges::Round { tolerance: 1e-9 },

@@ -1,4 +1,4 @@
-//! The tests of `space` that use it from outside, as one program.
+//! The integration tests of `space`, as one program.
 
 mod allocation;
 mod ascent;

@@ -1,4 +1,4 @@
-//! Our ascent: monotone, pole-free, better than the fixed step.
+//! Our ascent: monotone, without coordinate singularities, and better than the fixed step.
 
 use crate::common::{between, closed_start, lumpy, paper};
 use grasp::{Convention, Edges, FrameRule, Gradient};
@@ -162,7 +162,7 @@ fn round_cones_are_climbed_as_high_as_pyramids() {
                 .unwrap()
         };
         let (a, b) = (climb(&round), climb(&many));
-        // What the pyramids cut off where they ended.
+        // The loss from the inscribed pyramids at the end.
         let whole = Objective::new(&round, &shape, &Point3::origin())
             .epsilon(&contacts_on(&shape, &b.directions))
             .unwrap();

@@ -1,4 +1,5 @@
-//! A transfer between two objects measures each grasp on the object that it is on.
+//! A transfer between two objects measures each grasp under the convention resolved on its own
+//! object.
 
 use std::sync::Arc;
 
@@ -98,8 +99,8 @@ fn stations_are_made_once_per_pair() {
 
 #[test]
 fn an_open_start_is_content_with_what_its_convention_calls_stable() {
-    // Under metres a good grasp has a hundredth of the quality that it has under centimetres: the
-    // ascent must not take it for a bad one and start again.
+    // With a torque length in metres a good grasp has a hundredth of its quality in centimetres.
+    // The ascent must not take it for a poor one and restart.
     let surface = RadialField::new(lumpy(7));
     let p = sph::Direction::new_normalize(Vector3::new(1.0, 0.3, 0.2));
     let start = [0.0, 0.3, 0.6]
@@ -112,7 +113,7 @@ fn an_open_start_is_content_with_what_its_convention_calls_stable() {
             .unwrap()
     };
     let metres = Convention::paper().with_torque_length(1.0);
-    // A threshold that no grasp passes: every restart is made.
+    // A threshold that no grasp exceeds: every restart is made.
     let strict = Convention {
         stable_above: 1.0,
         ..metres.clone()
