@@ -55,7 +55,9 @@ pub enum ConstraintError {
         by: f64,
     },
     /// No grasp reachable from the start is closed under the second objective.
-    #[error("the start is not closed under the friction margin, by {by}, and no way leads there")]
+    #[error(
+        "the start misses closure under the friction margin by {by}, and no closed grasp was found from it"
+    )]
     FrictionMargin {
         /// Distance from closure.
         by: f64,

@@ -33,8 +33,8 @@ pub struct Jet {
 /// Constants for evaluating all Y_{l,m} with l ≤ L.
 ///
 /// Y_{l,m} = Π_l^{|m|}(z) · Im or Re (x+iy)^{|m|} for m < 0 or m ≥ 0 (Sec. II-C of the paper, no
-/// Condon–Shortley phase). Written in x, y, z it is a polynomial, so values and gradients are
-/// right at the poles too. About L² words; building it costs L² square roots.
+/// Condon–Shortley phase). Written in x, y and z it is a polynomial, so values and gradients have
+/// no singularity at the poles. About L² words; construction costs L² square roots.
 #[derive(Clone, Debug)]
 pub struct Basis {
     degree: usize,
@@ -43,7 +43,7 @@ pub struct Basis {
     derivative: Vec<Vec<f64>>,
 }
 
-/// Memory for one evaluation at a time; make it once and reuse it.
+/// Memory for one evaluation at a time; construct it once and reuse it.
 pub struct Workspace {
     azimuth: Azimuth,
     /// Π columns of three neighbouring orders, each indexed by l.
@@ -125,7 +125,7 @@ impl Basis {
             self.load_column(m + 1, 1, p.z, workspace);
             let azimuth = &workspace.azimuth;
             let (re, im) = (azimuth.re[m], azimuth.im[m]);
-            // m (x+iy)^{m−1}, brought to the scale of order m.
+            // m (x+iy)^{m−1} in the scale of order m.
             let (re_before, im_before) = lower_order(azimuth, m);
             for l in m..=self.degree {
                 let pi = workspace.columns[0][l];
@@ -215,7 +215,8 @@ impl Basis {
         ambient.jet(p)
     }
 
-    /// Loads Π_l^m for l = m … L into workspace column `slot`, indexed by l; nothing beyond L.
+    /// Loads Π_l^m for l = m … L into workspace column `slot`, indexed by l; writes nothing for m >
+    /// L.
     fn load_column(&self, m: usize, slot: usize, z: f64, workspace: &mut Workspace) {
         if m <= self.degree {
             let column = &mut workspace.columns[slot][m..=self.degree];

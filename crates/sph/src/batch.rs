@@ -16,12 +16,12 @@ use crate::index;
 use crate::lanes::{Lanes, coordinates, multiply_complex};
 use crate::legendre::Legendre;
 
-/// Points that go through the recurrences together: two recurrences and two sums of sixteen numbers
+/// Number of points that go through the recurrences together. With 16, two recurrences and two sums
 /// fit the vector registers.
 const LANES: usize = 16;
 type Lane = Lanes<LANES>;
 
-/// Points per task of [`evaluate`].
+/// Number of points per task of [`evaluate`].
 const CHUNK: usize = 256;
 
 /// f(pᵢ) = Σ β_{lm} Y_{lm}(pᵢ) for all i. About 4 L² flops per point.

@@ -1,4 +1,4 @@
-//! Certified extrema: numbers that a function on the sphere provably stays between.
+//! Certified extrema: proved bounds of a function over the whole sphere.
 
 use crate::basis::Jet;
 use crate::batch;
@@ -32,7 +32,7 @@ pub fn certified_range(beta: &Coefficients, oversampling: usize) -> Range {
     seen_on_grid(beta, oversampling.max(2)).range
 }
 
-/// A range and the grid that it comes from.
+/// A range and the grid on which it was computed.
 struct Seen {
     range: Range,
     rings: usize,
@@ -109,10 +109,10 @@ pub fn tight_range(beta: &Coefficients, share: f64) -> Range {
 /// of the largest value that the sum could have.
 const ROUNDING: f64 = 1e-13;
 
-/// Most cells visited per end of the range.
+/// Largest number of cells visited per end of the range.
 const MOST_CELLS: usize = 60_000;
 
-/// All points within `half` of (θ, φ) in both angles.
+/// The cell of all points within `half` of (θ, φ) in both angles.
 #[derive(Clone, Copy)]
 struct Cell {
     theta: f64,
@@ -175,7 +175,7 @@ impl Search<'_> {
         centre + self.reach * turn.max(0.0).cos()
     }
 
-    /// A certified lower bound of sign·f, and the least value found.
+    /// A certified lower bound of sign·f over the cells, and the least value found.
     fn extreme(&self, start: &[Cell], mut best: f64, sign: f64) -> (f64, f64) {
         let mut open = start.to_vec();
         let mut work = 0;
@@ -312,7 +312,7 @@ mod tests {
 
     #[test]
     fn a_spike_between_grid_points_is_inside_the_range() {
-        // The reproducing kernel at a point that no coarse grid holds: the sharpest peak there is.
+        // The reproducing kernel, the sharpest possible peak, at a point of no coarse grid.
         let degree = 20;
         let peak = crate::direction::SphericalCoords {
             theta: 1.234_567,

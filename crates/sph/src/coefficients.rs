@@ -2,7 +2,7 @@
 
 use crate::index;
 
-/// Why numbers are not a coefficient vector.
+/// Why a list of numbers is not a coefficient vector.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CoefficientsError {
     /// The length is not (L+1)² for any L.
@@ -79,7 +79,7 @@ impl Coefficients {
         &self.values
     }
 
-    /// The values, to be changed in place. The caller must keep them finite.
+    /// The values, mutable. The caller must keep them finite.
     pub fn as_mut_slice(&mut self) -> &mut [f64] {
         &mut self.values
     }
@@ -149,7 +149,7 @@ impl Coefficients {
 pub(crate) mod tests {
     use super::*;
 
-    /// A function with power in every harmonic, the same on every call.
+    /// A function with power in every harmonic; identical on every call.
     pub(crate) fn some_coefficients(degree: usize) -> Coefficients {
         let values = (0..index::count(degree)).map(|i| (i as f64 * 1.3).sin());
         Coefficients::new(values.collect()).unwrap()

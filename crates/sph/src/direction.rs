@@ -49,8 +49,8 @@ pub fn direction_and_radius(v: &Vector3<f64>) -> Option<(Direction, f64)> {
 
 /// Two orthonormal tangents (e₁, e₂) at p with e₁ × e₂ = p.
 ///
-/// Defined and accurate everywhere, the poles included; not continuous over the whole sphere,
-/// as no such frame is.
+/// Defined and accurate everywhere, including the poles. It is not continuous over the whole
+/// sphere, since no tangent frame is.
 pub fn tangent_frame(p: &Direction) -> (Vector3<f64>, Vector3<f64>) {
     // Duff et al. 2017: one branch on the sign of z, no cancellation.
     let sign = 1.0_f64.copysign(p.z);
@@ -67,7 +67,7 @@ pub fn project_tangent(p: &Direction, v: &Vector3<f64>) -> Vector3<f64> {
     v - p.into_inner() * p.dot(v)
 }
 
-/// Angle between two directions, in radians, accurate also when it is tiny or close to π.
+/// Angle between two directions, radians; accurate also near 0 and near π.
 pub fn angle(p: &Direction, q: &Direction) -> f64 {
     p.cross(q).norm().atan2(p.dot(q))
 }
@@ -118,7 +118,7 @@ pub fn geodesic(p: &Direction, q: &Direction, t: f64) -> Direction {
     retract(p, &(log(p, q) * t))
 }
 
-/// `count` directions spread evenly over the sphere (a Fibonacci lattice); always the same.
+/// `count` directions spread evenly over the sphere (a Fibonacci lattice); deterministic.
 pub fn even_directions(count: usize) -> Vec<Direction> {
     let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     (0..count)

@@ -1,10 +1,10 @@
 //! The double Fourier sphere: functions as fine grids on a torus, ready for local interpolation.
 //!
-//! With θ running once around the circle, (θ, φ) and (2π−θ, φ+π) are one point, and a function of
-//! degree D is a trigonometric polynomial of degree D in both angles. Its modes, divided by the
-//! window's transform and summed on a grid σ times finer than they need, make a grid whose sum with
-//! the window at any point is the function there, to the window's accuracy. The adjoint takes
-//! spread points to moments.
+//! With θ running around the whole circle, (θ, φ) and (2π−θ, φ+π) are the same point, and a
+//! function of degree D is a trigonometric polynomial of degree D in both angles. Its modes are
+//! divided by the window's transform and summed on a grid σ times finer than they need. The sum of
+//! that grid with the window at any point is the function's value there, to the window's accuracy.
+//! The adjoint converts spread points to moments.
 
 mod simd;
 
@@ -19,20 +19,20 @@ use crate::kernel::{Kernel, OVERSAMPLING, TAPS, TAPS_BEFORE};
 use crate::ring_pairs::{OrderValues, RingPairs, add_up};
 use crate::two_step::{Folded, TwoStep};
 
-/// Fine grid values: rows of equal θ from a little before the north pole to a little beyond the
-/// south pole, columns of equal φ with the first and last few repeated.
+/// Fine grid values: rows of equal θ from just before the north pole to just beyond the south pole,
+/// columns of equal φ with the first and last few repeated.
 #[derive(Clone, Debug)]
 pub(crate) struct FineGrid {
     pub(crate) values: Vec<f64>,
 }
 
-/// The transform between coefficients of one degree and fine grids.
+/// The transform between coefficients of one degree and fine grids, in both directions.
 #[derive(Clone, Debug)]
 pub(crate) struct DoubleFourier {
     degree: usize,
     two_step: TwoStep,
     kernel: Kernel,
-    /// Along the θ circle through the rings on which harmonics are summed.
+    /// The transform along the θ circle through the rings on which harmonics are summed.
     coarse: Fft,
     theta: Fft,
     phi: Fft,
@@ -104,12 +104,12 @@ impl DoubleFourier {
         self.theta.length()
     }
 
-    /// Rows kept: θ from −TAPS_BEFORE to half the circle + TAPS/2.
+    /// Number of stored rows: θ from −TAPS_BEFORE to half the circle + TAPS/2.
     pub(crate) fn rows(&self) -> usize {
         self.steps() / 2 + TAPS
     }
 
-    /// Numbers from the start of one row to the start of the next.
+    /// Distance between the starts of consecutive rows, in numbers.
     pub(crate) fn stride(&self) -> usize {
         self.steps() + TAPS
     }
@@ -199,7 +199,7 @@ impl DoubleFourier {
         (0..=last / 2).map(move |j| (j, j, last - j))
     }
 
-    /// Adds up rings · P̄_l^m; the adjoint of [`DoubleFourier::ring_modes`] without its halving.
+    /// Sums rings · P̄_l^m; the adjoint of [`DoubleFourier::ring_modes`] without its halving.
     fn sum_rings(&self, rings: &Modes) -> Vec<f64> {
         let last = self.ring_count() - 1;
         let parts: Vec<Vec<Folded>> = (0..self.blocks.len())
@@ -213,7 +213,7 @@ impl DoubleFourier {
                     }
                     for (m, value) in values.iter_mut().enumerate() {
                         for (side, ring) in [(0, north), (1, south)] {
-                            // The equator is its own mirror image: counted once.
+                            // The equator is its own mirror image and is counted once.
                             if side == 0 || north != south {
                                 let at = ring * rings.stride + m;
                                 value.cos[side][j % LANES] = rings.re[at];
@@ -234,7 +234,7 @@ impl DoubleFourier {
         self.two_step.unfold(&add_up(&parts, self.two_step.len()))
     }
 
-    /// From coarse rings to fine rows, order by order.
+    /// Modes of the fine rows from those of the coarse rings, order by order.
     fn row_modes(&self, rings: &Modes) -> Modes {
         let columns: Vec<Vec<Complex>> = (0..rings.stride / LANES)
             .into_par_iter()
@@ -280,7 +280,7 @@ impl DoubleFourier {
         rings
     }
 
-    /// Place on the θ circle of a stored row.
+    /// Index on the θ circle of a stored row.
     #[inline(always)]
     fn circle_position(&self, row: usize) -> usize {
         let n = self.steps();

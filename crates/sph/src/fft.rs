@@ -5,7 +5,7 @@
 
 use crate::lanes::Lanes;
 
-/// Sequences transformed together.
+/// Number of sequences transformed together.
 pub(crate) const LANES: usize = 8;
 
 /// One element of eight complex sequences.
@@ -41,7 +41,7 @@ pub(crate) enum Sign {
     Plus,
 }
 
-/// The least even number ≥ `least` whose prime factors are 2, 3 and 5.
+/// The least even number ≥ `least` whose prime factors are 2, 3 and 5 only.
 pub(crate) fn smooth_length(least: usize) -> usize {
     let smooth = |mut n: usize| {
         for p in [2, 3, 5] {
@@ -59,7 +59,7 @@ pub(crate) fn smooth_length(least: usize) -> usize {
 }
 
 impl Fft {
-    /// A transform of a length made of the factors 2, 3 and 5.
+    /// A transform of a length whose prime factors are 2, 3 and 5 only.
     pub(crate) fn new(length: usize) -> Self {
         let mut rest = length;
         let mut radices = Vec::new();

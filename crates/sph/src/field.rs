@@ -18,14 +18,14 @@ use crate::rotation::{cyclic, rotate};
 /// Why fields cannot be combined.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FieldError {
-    /// The degrees differ, and so do the grids.
+    /// The degrees differ, and so the grids differ.
     #[error("field {index} is of degree {degree}; the first has degree {first_degree}")]
     Mismatch {
-        /// Which field.
+        /// Index of the field with the other degree.
         index: usize,
-        /// Its degree.
+        /// Degree of that field.
         degree: usize,
-        /// Degree of the first.
+        /// Degree of the first field.
         first_degree: usize,
     },
     /// There is nothing to combine.
@@ -33,20 +33,21 @@ pub enum FieldError {
     Empty,
 }
 
-/// Lower degrees are stored as this one: the grid must be at least as wide as the window.
+/// Least degree that is stored: the grid must be at least as wide as the window. Fields of lower
+/// degree are stored at this degree.
 const LEAST_DEGREE: usize = 8;
 
-/// A function on the sphere, tabulated so that its value and derivatives anywhere take a fraction of a
-/// microsecond.
+/// A function on the sphere, tabulated so that its value and derivatives at any point take a
+/// fraction of a microsecond.
 ///
 /// With M = max |f − mean| and L at least 8, the errors of value, gradient and Hessian are below
-/// 1e-13 M, 1e-13 L M and 2e-12 L² M. If the coefficients fall like 1/l², they are below 1e-10 of the
-/// largest value, gradient and Hessian (`docs/accuracy.md`). Tests measure both, but neither is proved:
-/// proofs use [`crate::bounds`].
+/// 1e-13 M, 1e-13 L M and 2e-12 L² M. If the coefficients decrease like 1/l², the errors are below
+/// 1e-10 of the largest value, gradient and Hessian (`docs/accuracy.md`). Tests measure both;
+/// neither is proved. Proofs use [`crate::bounds`].
 ///
-/// A field is linear in the coefficients: the field of Σ αᵢ βᵢ is [`Field::combine`] of the fields, a
-/// sum over grids. Memory: about 80 L² bytes per chart. The window has sixteen taps; fourteen would save
-/// a thirtieth of the time and lose two digits of the Hessian.
+/// A field is linear in the coefficients: the field of Σ αᵢ βᵢ is [`Field::combine`] of the fields,
+/// a sum over grids. Memory: about 80 L² bytes per chart. The window has sixteen taps; fourteen
+/// would save a thirtieth of the time and lose two digits of the Hessian.
 ///
 /// ```
 /// use sph::direction::even_directions;
@@ -67,13 +68,13 @@ pub struct Field {
     fourier: DoubleFourier,
     /// The chart with its axis along z, and the one along x.
     charts: [FineGrid; 2],
-    /// The mean of the function; the grids hold the rest.
+    /// The mean of the function; the grids hold the difference from it.
     mean: f64,
     arch: Arch,
 }
 
 impl Field {
-    /// Tabulates a function on both charts. A few milliseconds at L = 50; about L³ flops.
+    /// Tabulates a function on both charts. Costs about L³ flops, a few milliseconds at L = 50.
     pub fn new(beta: &Coefficients) -> Self {
         let fourier = DoubleFourier::new(beta.degree().max(LEAST_DEGREE));
         let mut rest = beta.with_degree(fourier.degree());
@@ -87,7 +88,7 @@ impl Field {
         }
     }
 
-    /// L: that of the coefficients, or 8 if theirs is lower.
+    /// The degree of the coefficients, but at least 8.
     pub fn degree(&self) -> usize {
         self.fourier.degree()
     }
@@ -168,7 +169,7 @@ impl Field {
     }
 }
 
-/// A point in the chart whose poles are farther away: sin θ is never below √½.
+/// A point in the chart whose poles are farther away, so that sin θ ≥ √½.
 struct Place {
     tilted: bool,
     q: Vector3<f64>,
@@ -199,7 +200,7 @@ impl Place {
         }
     }
 
-    /// Unit vectors along growing θ and φ.
+    /// Unit vectors in the directions of increasing θ and φ.
     fn frame(&self) -> (Vector3<f64>, Vector3<f64>) {
         let (cos_phi, sin_phi) = (self.q.x / self.sin, self.q.y / self.sin);
         (
@@ -208,7 +209,7 @@ impl Place {
         )
     }
 
-    /// f, f_θ, f_φ, f_θθ, f_θφ, f_φφ in grid steps to the jet; ∇ = f_θ e_θ + (f_φ / sin θ) e_φ.
+    /// The jet from f, f_θ, f_φ, f_θθ, f_θφ, f_φφ in grid steps; ∇ = f_θ e_θ + (f_φ / sin θ) e_φ.
     fn jet(&self, d: &[f64; 6], n: f64) -> Jet {
         let (e_theta, e_phi) = self.frame();
         let (theta, phi) = (d[1] * n, d[2] * n / self.sin);
@@ -228,7 +229,7 @@ impl Place {
     }
 }
 
-/// From the axes (y, z, x) back to (x, y, z).
+/// Components in (x, y, z) of a vector given in the axes (y, z, x).
 fn unturned(v: &Vector3<f64>) -> Vector3<f64> {
     Vector3::new(v.z, v.x, v.y)
 }
@@ -256,7 +257,7 @@ impl<const PARTS: usize> WithSimd for Read<'_, PARTS> {
     fn with_simd<S: Simd>(self, _simd: S) -> [f64; 6] {
         let (kernel, stride) = (self.fourier.kernel(), self.fourier.stride());
         let row = self.theta as usize;
-        // Rounding may bring φ to one whole turn.
+        // Rounding can make φ equal to one whole turn.
         let column = (self.phi as usize).min(self.fourier.steps() - 1);
         let along_theta = kernel.derivatives::<S, PARTS>(self.theta - row as f64 - 0.5);
         let along_phi = kernel.derivatives::<S, PARTS>(self.phi - column as f64 - 0.5);
@@ -284,7 +285,7 @@ impl<const PARTS: usize> WithSimd for Read<'_, PARTS> {
     }
 }
 
-/// Columns that are summed together.
+/// Number of columns that are summed together.
 const HALF: usize = TAPS / 2;
 /// Orders of the derivatives along θ and φ, in the order in which they are returned.
 const ORDERS: [(usize, usize); 6] = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)];

@@ -42,8 +42,8 @@ impl RingGrid {
         }
     }
 
-    /// Rings at θ = π j / (rings−1), the poles included; for pictures and bounds, not for quadrature
-    /// (weights are zero). Needs at least two rings.
+    /// Rings at θ = π j / (rings−1), including the poles. For figures and bounds, not for
+    /// quadrature: the weights are zero. Needs at least two rings.
     pub fn equiangular(rings: usize, longitudes: usize) -> Self {
         let step = std::f64::consts::PI / (rings.max(2) - 1) as f64;
         Self {

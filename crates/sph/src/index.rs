@@ -2,7 +2,7 @@
 
 /// Position of Y_{l,m} in a coefficient vector: l² + l + m.
 ///
-/// Degrees follow each other, and within a degree m runs from −l to l. Needs |m| ≤ l.
+/// Degrees are consecutive, and within a degree m runs from −l to l. Needs |m| ≤ l.
 pub fn position(l: usize, m: isize) -> usize {
     debug_assert!(m.unsigned_abs() <= l, "order {m} beyond degree {l}");
     (l * l + l).wrapping_add_signed(m)

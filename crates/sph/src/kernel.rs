@@ -1,9 +1,9 @@
 //! The Kaiser–Bessel window that spreads a point over its grid neighbours.
 //!
-//! φ(d) = I₀(β √(1−(2d/w)²)) / I₀(β) for |d| ≤ w/2 grid steps, β = π w (1 − 1/2σ) for a grid σ times
-//! finer than the highest mode needs. Between two grid points every tap is one smooth function of
-//! the position, so it is tabulated as a polynomial. (Barnett, Magland and af Klinteberg 2019
-//! compare such windows; this one's derivatives stay finite at its ends.)
+//! φ(d) = I₀(β √(1−(2d/w)²)) / I₀(β) for |d| ≤ w/2 grid steps, β = π w (1 − 1/2σ) for a grid σ
+//! times finer than the highest mode needs. Between two grid points the weight of every tap is a
+//! smooth function of the position, which is tabulated as a polynomial. Barnett, Magland and af
+//! Klinteberg 2019 compare such windows. The derivatives of this window stay finite at its ends.
 
 use pulp::Simd;
 
@@ -29,8 +29,8 @@ type Half = [f64; TAPS / 2];
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
     beta: f64,
-    /// Coefficients of u^{2d} and of u^{2d+1} of the first half of the taps, the highest d first: of
-    /// φ, φ′ and φ″. The derivatives have tables of their own, since differentiating a table loses
+    /// Coefficients of u^{2d} and of u^{2d+1} of the first half of the taps, the highest d first,
+    /// for φ, φ′ and φ″. The derivatives have their own tables, since differentiating a table loses
     /// digits.
     powers: Vec<[[Half; 2]; 3]>,
 }
@@ -78,7 +78,7 @@ impl Kernel {
                 }
             }
         }
-        // φ(−d) = φ(d): the mirrored tap at u is the tap at −u; derivatives change sign in turn.
+        // φ(−d) = φ(d), so the mirrored tap at u is the tap at −u; odd derivatives change sign.
         let mut out = [[0.0; TAPS]; PARTS];
         for (part, (out, [even, odd])) in out.iter_mut().zip(&sums).enumerate() {
             let sign = if part % 2 == 0 { 1.0 } else { -1.0 };

@@ -1,8 +1,8 @@
 //! Arrays of numbers that go through the same arithmetic together, one number per lane.
 //!
 //! Loops over a fixed number of lanes become vector instructions when they are inlined into a pulp
-//! dispatch. The number of lanes differs between the algorithms: it is chosen so that what one of them
-//! keeps fits the vector registers.
+//! dispatch. Each algorithm has its own number of lanes, chosen so that its intermediate values fit
+//! the vector registers.
 
 use crate::direction::Direction;
 

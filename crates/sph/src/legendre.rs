@@ -6,8 +6,8 @@
 //! Π_m^m = c_m, Π_l^m = a_lm z Π_{l−1}^m − b_lm Π_{l−2}^m,
 //! a_lm = √((4l²−1)/(l²−m²)), b_lm = √((2l+1)((l−1)²−m²) / ((2l−3)(l²−m²))).
 //!
-//! sinᵐθ goes with the azimuthal part as Re, Im (x+iy)ᵐ, so that nothing is ever divided by sin θ.
-//! Π stays below about (1+√2)^l, 1e115 at l = 300; only (x+iy)ᵐ underflows, and is scaled.
+//! sinᵐθ is part of the azimuthal factors Re, Im (x+iy)ᵐ, so there is no division by sin θ. Π is
+//! below about (1+√2)^l, 1e115 at l = 300. Only (x+iy)ᵐ underflows, and is scaled.
 
 /// Constants of the three-term recurrence, one column per order m.
 #[derive(Clone, Debug)]
@@ -15,9 +15,9 @@ pub(crate) struct Legendre {
     degree: usize,
     /// c_m = Π_m^m, m = 0 … L.
     sectoral: Vec<f64>,
-    /// (a_lm, b_lm) for l = m+1 … L, columns m one after the other.
+    /// (a_lm, b_lm) for l = m+1 … L, column after column.
     steps: Vec<(f64, f64)>,
-    /// Where column m begins in `steps`.
+    /// Index in `steps` at which column m begins.
     starts: Vec<usize>,
 }
 
@@ -103,13 +103,13 @@ pub(crate) fn derivative_factor(l: usize, m: usize) -> f64 {
     }
 }
 
-/// Re and Im of (x+iy)ᵐ for m = 0 … L, kept representable by powers of two.
+/// Re and Im of (x+iy)ᵐ for m = 0 … L, scaled by powers of two to stay representable.
 ///
 /// The true value is `(re, im) · 2^−exponent`, the exponent a multiple of [`SCALE_STEP`].
 pub(crate) struct Azimuth {
     pub(crate) re: Vec<f64>,
     pub(crate) im: Vec<f64>,
-    /// Factor that takes the scaled values back, as two factors that do not underflow alone.
+    /// The factor that undoes the scaling, as two factors neither of which underflows.
     pub(crate) unscale: Vec<(f64, f64)>,
 }
 
@@ -125,8 +125,8 @@ impl Azimuth {
     }
 
     pub(crate) fn fill(&mut self, x: f64, y: f64) {
-        // A direction this close to the axis counts as the pole: its powers would underflow between two
-        // scale steps.
+        // A direction this close to the axis is treated as the pole, since its powers would
+        // underflow between two scale steps.
         let (x, y) = if x.abs().max(y.abs()) < 1e-150 {
             (0.0, 0.0)
         } else {

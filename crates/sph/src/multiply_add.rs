@@ -4,8 +4,8 @@ use pulp::Simd;
 
 /// a·b + c, rounded once on processors with vectors and twice on others.
 ///
-/// Every processor for which pulp has vectors also has the fused instruction. On the others
-/// `f64::mul_add` would be a slow call of a library.
+/// Every processor for which pulp has vectors also has the fused instruction. On other processors
+/// `f64::mul_add` would be a slow library call.
 #[inline(always)]
 pub(crate) fn multiply_add<S: Simd>(a: f64, b: f64, c: f64) -> f64 {
     if size_of::<S::f64s>() > size_of::<f64>() {

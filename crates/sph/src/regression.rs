@@ -79,15 +79,15 @@ pub enum RegressionError {
         /// Number of values.
         values: usize,
     },
-    /// There is nothing to fit.
+    /// There are no samples.
     #[error("no samples")]
     Empty,
     /// A value or direction is NaN or infinite.
     #[error("sample {index} has value {value}; expected a finite value at a unit direction")]
     NotFinite {
-        /// Which sample.
+        /// Index of the sample.
         index: usize,
-        /// Its value.
+        /// The value of the sample.
         value: f64,
     },
     /// The samples do not determine the coefficients, and there is no penalty.
@@ -107,9 +107,9 @@ pub enum RegressionError {
         "weight {index} is {value}; expected one finite weight per sample, none negative and at least one positive"
     )]
     Weight {
-        /// Which weight; the number of samples if there are more or fewer weights.
+        /// Index of the weight; the number of samples if there are more or fewer weights.
         index: usize,
-        /// The value found; NaN when there is none.
+        /// The weight found; NaN if it is missing.
         value: f64,
     },
     /// The iteration did not reach its accuracy, and the degree is too high for a dense factor.
@@ -119,7 +119,7 @@ pub enum RegressionError {
     NotConverged {
         /// Degree L.
         degree: usize,
-        /// Iterations spent.
+        /// Number of iterations.
         iterations: usize,
     },
     /// The penalty is not a finite number ≥ 0.

@@ -28,7 +28,7 @@ pub(crate) struct OrderValues {
     pub(crate) sin: [Lane; 2],
 }
 
-/// The sum of vectors, added in the order given.
+/// The sum of the vectors in the given order.
 pub(crate) fn add_up(parts: &[Vec<Folded>], length: usize) -> Vec<Folded> {
     let mut sum = vec![[0.0; 4]; length];
     for part in parts {

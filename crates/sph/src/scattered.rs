@@ -16,18 +16,19 @@ use crate::index;
 use crate::kernel::{TAPS, Taps};
 use crate::multiply_add::multiply_add;
 
-/// Points per task of [`Scattered::evaluate`].
+/// Number of points per task of [`Scattered::evaluate`].
 const CHUNK: usize = 2048;
-/// Tiles from pole to pole; a power of two, so that a point's band follows from θ without rounding.
+/// Number of bands of tiles from pole to pole; a power of two, so that a point's band follows from
+/// θ without rounding.
 const BANDS: usize = 64;
-/// Tiles around each band.
+/// Number of tiles in each band.
 const SECTORS: usize = 64;
-/// Fewest rows per task. A task also holds the rows that its windows cover beyond its own.
+/// Least number of rows per task. A task also holds the rows that its windows cover beyond its own.
 const OWNED_ROWS: usize = 24;
 
 /// Points of the sphere, prepared for repeated sums.
 ///
-/// Sums are relatively accurate to about 1e-14 of the largest value, at any degree.
+/// Sums are accurate to about 1e-14 of the largest value, at any degree.
 #[derive(Clone, Debug)]
 pub struct Scattered {
     /// (θ, φ) in whole turns, [0, ½] and [0, 1), tile after tile.
@@ -180,7 +181,7 @@ impl Footprint {
         let n = fourier.steps();
         let x = turns[0] * n as f64;
         let y = turns[1] * n as f64;
-        // Rounding may bring φ to one whole turn; the last column then serves with u = ½.
+        // Rounding can make φ equal to one whole turn; then the last column with u = ½ is used.
         let row = (x as usize).min(n / 2);
         let column = (y as usize).min(n - 1);
         Self {

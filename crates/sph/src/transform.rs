@@ -7,8 +7,8 @@ use crate::fft::{Complex, Fft, LANES, smooth_length};
 use crate::ring_pairs::{RingPairs, add_analysis, add_up, synthesis};
 use crate::two_step::{Folded, TwoStep};
 
-/// Whether the functions below apply: ring j is the mirror image of ring n−1−j, and there are more
-/// than 2L longitudes, a number whose factors are 2, 3 and 5.
+/// Whether the functions below apply. Ring j must be the mirror image of ring n−1−j, and there must
+/// be more than 2L longitudes, a number whose prime factors are 2, 3 and 5 only.
 pub(crate) fn suits(rings: &[(f64, f64)], longitudes: usize, degree: usize) -> bool {
     let mirrored = rings
         .iter()

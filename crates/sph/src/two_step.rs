@@ -23,14 +23,14 @@ pub(crate) struct TwoStep {
     steps: Vec<(f64, f64)>,
     /// α_k.
     scales: Vec<f64>,
-    /// (1/ε_{m+2k+1}, ε_{m+2k+2}); the first is zero where there is no such degree.
+    /// (1/ε_{m+2k+1}, ε_{m+2k+2}); the first is zero if there is no such degree.
     links: Vec<(f64, f64)>,
     /// Index of the first step of each order, and the number of steps.
     starts: Vec<usize>,
 }
 
 impl TwoStep {
-    /// About L²/2 square roots.
+    /// The recurrences up to a degree; about L²/2 square roots.
     pub(crate) fn new(degree: usize) -> Self {
         let legendre = Legendre::new(degree + 2);
         let mut out = Self {

@@ -15,12 +15,12 @@ use crate::lanes::{Lanes, coordinates, multiply_complex};
 use crate::legendre::{Legendre, derivative_factor};
 use crate::multiply_add::multiply_add;
 
-/// Points that go through the recurrences together: fewer than in the parent module, since nine sums
-/// per point have to fit the vector registers.
+/// Number of points that go through the recurrences together. It is lower than in the parent
+/// module, since nine sums per point have to fit the vector registers.
 const LANES: usize = 4;
 type Lane = Lanes<LANES>;
 
-/// Points per task.
+/// Number of points per task.
 const CHUNK: usize = 64;
 
 /// f, ∇_S f and the covariant Hessian at all points, as [`crate::Basis::jet`] gives them.

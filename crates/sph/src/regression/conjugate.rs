@@ -22,7 +22,7 @@ pub(super) struct Outcome {
 /// of the quadratic; or at `floor`, if that is larger.
 #[derive(Clone, Copy)]
 pub(super) struct Limits {
-    /// Most iterations.
+    /// Largest number of iterations.
     pub(super) iterations: usize,
     /// Relative tolerance of the squared error.
     pub(super) share: f64,

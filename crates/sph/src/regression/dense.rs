@@ -11,7 +11,7 @@ use crate::grid::gauss_legendre;
 use crate::index;
 use crate::legendre::Legendre;
 
-/// YᵀWY, every block of two orders from the rings of its density.
+/// YᵀWY, assembled block by block (one block per pair of orders) from the rings of its density.
 pub(super) struct Dense {
     /// Lower triangle in [`Order`].
     matrix: Mat<f64>,
@@ -28,7 +28,7 @@ pub(super) struct Factor<'a> {
 }
 
 impl Dense {
-    /// About L⁵ flops; 8·(L+1)⁴ bytes.
+    /// Assembles the matrix. About L⁵ flops; 8·(L+1)⁴ bytes.
     pub(super) fn new(density: &Coefficients, degree: usize) -> Self {
         let order = Order::new(degree);
         Self {
@@ -37,7 +37,8 @@ impl Dense {
         }
     }
 
-    /// `None` when the matrix is not positive definite in floating point. (L+1)⁶/3 flops.
+    /// Its Cholesky factor; `None` if the matrix is not positive definite in floating point.
+    /// (L+1)⁶/3 flops.
     pub(super) fn factor(&self, penalty: Penalty) -> Option<Factor<'_>> {
         let mut matrix = self.matrix.clone();
         for (row, &position) in self.order.positions.iter().enumerate() {
@@ -63,8 +64,8 @@ impl Dense {
     }
 }
 
-/// The number of parts into which large products are split. It is the same on every machine, since the
-/// order of additions, and so the last bits of the result, depend on it.
+/// The number of parts into which large products are split. It is the same on every machine, since
+/// the order of additions determines the last bits of the result.
 fn shares() -> Par {
     Par::rayon(4)
 }

@@ -20,15 +20,15 @@ use super::{Method, Penalty, RegressionError, Samples, qr};
 use crate::coefficients::Coefficients;
 use crate::index;
 
-/// Up to this degree a dense factor costs less than iterations.
+/// Largest degree at which a dense factor costs less than iterations.
 const SMALL_DEGREE: usize = 16;
-/// Up to this degree a dense factor is used if the iteration fails.
+/// Largest degree at which a dense factor is used if the iteration fails.
 const DENSE_DEGREE: usize = 80;
 
 /// A right-hand side, a start vector, and when to stop.
 pub(super) type Task<'a> = (&'a [f64], Option<&'a [f64]>, Limits);
 
-/// Most iterations if there is no other method.
+/// Largest number of iterations when there is no other method.
 pub(super) const MOST_ITERATIONS: usize = 5000;
 
 /// The normal equations of a set of samples at one degree.
@@ -43,7 +43,7 @@ pub struct Gram {
     density: Coefficients,
     /// YᵀWY as multiplication by ρ.
     operator: Multiplier,
-    /// Multiplication by 1/ρ̃, where ρ̃ is smooth and positive: the preconditioner.
+    /// Multiplication by 1/ρ̃ with ρ̃ smooth and positive: the preconditioner.
     inverse: Multiplier,
     /// YᵀW(f − mean), position l²+l+m.
     right: Vec<f64>,
@@ -57,7 +57,7 @@ pub struct Gram {
 /// The solution of [`Gram::solve`] and its condition number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
-    /// β.
+    /// The coefficients β.
     pub coefficients: Coefficients,
     /// Condition number of [√W Y; √penalty], to about ten per cent.
     pub condition: f64,

@@ -28,7 +28,8 @@ impl Lanczos {
         if self.diagonal.is_empty() {
             return 1.0;
         }
-        // By Gershgorin's circles none is above 1.5 `most`; every diagonal entry is at least the smallest.
+        // By Gershgorin's theorem no eigenvalue exceeds 1.5 `most`; every diagonal entry is at
+        // least the smallest.
         let largest = self.bisect(least, 2.0 * most, |below| below < self.diagonal.len());
         let smallest = self.bisect(1e-18 * least, least, |below| below == 0);
         largest / smallest
@@ -68,7 +69,7 @@ mod tests {
 
     #[test]
     fn finds_the_ends_of_a_known_matrix() {
-        // With α = 1 and β = ¼ after the first row: 1.25 on the diagonal, ½ beside it.
+        // α = 1 and β = ¼ after the first row give 1.25 on the diagonal and ½ beside it.
         let mut steps = Lanczos::default();
         assert_eq!(steps.condition(), 1.0);
         for _ in 0..400 {

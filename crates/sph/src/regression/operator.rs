@@ -9,8 +9,8 @@ use crate::grid::gauss_legendre;
 use crate::ring_pairs::{RingPairs, add_analysis, add_up, synthesis};
 use crate::two_step::{Folded, TwoStep};
 
-/// Blocks of [`LANES`] pairs of rings per task. It is fixed, so that sums do not depend on the number of
-/// threads.
+/// Number of blocks of [`LANES`] pairs of rings per task. It is fixed, so that sums do not depend
+/// on the number of threads.
 const BLOCKS_PER_TASK: usize = 4;
 
 /// b ↦ Sᵀ diag(ω g) S b with S the degree-L synthesis on a Gauss–Legendre grid: the coefficients up
@@ -107,7 +107,7 @@ fn ring_pairs(rings: usize) -> (Vec<RingPairs>, Vec<Complex>) {
             place.z[k] = z;
             place.sin[k] = ((1.0 - z) * (1.0 + z)).sqrt();
             share.re[k] = weights[j];
-            // The equator is its own mirror image: counted once.
+            // The equator is its own mirror image and is counted once.
             share.im[k] = if 2 * j + 1 == rings { 0.0 } else { weights[j] };
         }
         places.push(place);

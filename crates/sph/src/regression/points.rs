@@ -12,7 +12,7 @@ pub(super) enum Points {
 
 impl Points {
     pub(super) fn new(directions: &[Direction], degree: usize) -> Self {
-        // A point costs the square of the window's width instead of L²; the grid costs L³ once.
+        // Each point costs the square of the window's width instead of L²; the grid costs L³ once.
         if directions.len() > 400 && degree > 8 {
             Self::Many(Scattered::new(directions))
         } else {

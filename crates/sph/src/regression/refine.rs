@@ -6,8 +6,9 @@ use super::{Penalty, RegressionError, Samples};
 use crate::coefficients::Coefficients;
 use crate::index;
 
-/// Most corrections, and the largest relative size of the last one.
+/// Largest number of corrections.
 const MOST_CORRECTIONS: usize = 6;
+/// The refinement ends with a correction below this share of the norm of β.
 const SETTLED: f64 = 1e-6;
 
 /// Corrections below this share of the mean are rounding: the values of a constant function differ

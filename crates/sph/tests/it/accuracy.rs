@@ -1,4 +1,4 @@
-//! Owns the table of docs/accuracy.md: every row is measured here and must stay below what it states.
+//! Measures every row of the table in docs/accuracy.md; no row may exceed the stated value.
 #![allow(clippy::print_stderr, reason = "says what was measured or left out")]
 
 use std::collections::BTreeMap;
@@ -11,7 +11,7 @@ use sph::rotation::rotate;
 use sph::scattered::Scattered;
 use sph::{Basis, Coefficients, Direction, Field, Jet, batch, index};
 
-/// A function with the decay of a real surface: mean 1, β ~ 1/l².
+/// A function with the decay of a typical surface: mean 1, β ~ 1/l².
 fn surface(degree: usize) -> Coefficients {
     let mut beta = Coefficients::constant(degree, 1.0);
     for (i, b) in beta.as_mut_slice().iter_mut().enumerate().skip(1) {
@@ -43,7 +43,7 @@ fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
 
 /// Worst differences of the fast sums from the plain ones, over the largest value.
 fn sums(degree: usize) -> [f64; 2] {
-    // The plain path takes its time at high degrees.
+    // The direct sum is slow at high degrees.
     let (beta, points) = (surface(degree), places(150_000 / degree));
     let basis = Basis::new(degree);
     let mut work = basis.workspace();

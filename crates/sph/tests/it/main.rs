@@ -1,4 +1,4 @@
-//! The tests of `sph` that use it from outside, as one program.
+//! The integration tests of `sph`, as one program.
 
 mod accuracy;
 mod properties;

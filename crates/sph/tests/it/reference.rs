@@ -45,7 +45,7 @@ fn every_reference_row_to_1e_12() {
         for (a, b) in found.iter().zip(&cells[4..7]) {
             let error = (a - b).abs();
             assert!(a.is_finite());
-            // Below the range of normal numbers there is nothing to compare.
+            // Subnormal numbers are not compared.
             assert!(
                 error <= 1e-12 * scale || scale < 1e-280 && error <= 1e-290,
                 "l={l} m={m} θ={} φ={}: {found:?} against {:?}",

@@ -1,4 +1,4 @@
-//! The Gram route against dense QR, and what the penalty promises.
+//! The Gram route against dense QR, and the properties of the penalty.
 
 use nalgebra::Vector3;
 use sph::direction::even_directions;

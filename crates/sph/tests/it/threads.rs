@@ -25,7 +25,7 @@ fn samples(count: usize, degree: usize) -> (Vec<Direction>, Vec<f64>) {
     (directions, values)
 }
 
-/// The bits of what `run` gives in pools of 1, 2 and 4 threads.
+/// The bits of the result of `run` in pools of 1, 2 and 4 threads.
 fn bits(run: impl Fn() -> Vec<f64> + Sync) -> [Vec<u64>; 3] {
     [1, 2, 4].map(|threads| {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();

@@ -7,11 +7,13 @@ use crate::regression::conjugate::Limits;
 use crate::regression::penalty::roughness;
 use crate::regression::{Penalty, RegressionError};
 
-/// Range of log₁₀(λ/N), and the start of the search.
+/// Range of log₁₀(λ/N) that is searched.
 const RANGE: (f64, f64) = (-14.0, 0.0);
+/// log₁₀(λ/N) at which the search starts.
 const START: f64 = -8.0;
-/// Longest step, and the step that ends the search, in decades.
+/// Longest step of the search, decades.
 const LONGEST: f64 = 2.0;
+/// The search ends with a step shorter than this, decades.
 const SHORTEST: f64 = 0.05;
 
 /// The root of the derivative of the likelihood by log λ.
@@ -64,7 +66,7 @@ fn balance(
         .sum::<f64>()
         / traces.len().max(1) as f64;
     let outcome = found.swap_remove(0);
-    // For data that are fitted exactly only rounding would remain.
+    // An exact fit would leave only rounding.
     let rss = (gram.sum_squares() + outcome.quadratic).max(1e-15 * gram.sum_squares());
     let rough: f64 = (0..)
         .zip(&outcome.solution)
