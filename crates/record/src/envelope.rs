@@ -1,4 +1,4 @@
-//! The header of binary records. This module alone uses bincode.
+//! The header of binary records. No other module uses bincode.
 //!
 //! Layout, little endian: magic `MODULI\r\n` (8 bytes), kind (u16), version (u16), length of the
 //! body (u64), FNV-1a checksum of the body (u64), body.
@@ -9,7 +9,7 @@ use serde::de::DeserializeOwned;
 
 const MAGIC: [u8; 8] = *b"MODULI\r\n";
 const HEADER: usize = 28;
-/// Largest body, bytes. A library of a thousand shapes of degree 100 has 80 MB.
+/// Largest body, bytes: 256 MiB. A library of a thousand shapes of degree 100 has 80 MB.
 const MAX_BODY: u64 = 1 << 28;
 
 /// Kind of a binary record.
@@ -35,7 +35,7 @@ impl Kind {
         }
     }
 
-    /// The version that is written, and the only one that is read.
+    /// The version that is written, which is also the only one that is read.
     fn version(self) -> u16 {
         match self {
             Kind::Shape | Kind::Library | Kind::Spherical | Kind::LibraryObject => 1,
@@ -87,7 +87,7 @@ pub enum EnvelopeError {
         /// The version that is read.
         known: u16,
     },
-    /// The body is shorter or longer than the header says.
+    /// The length of the body differs from that in the header.
     #[error("the record says {expected} bytes of content, but {found} follow the header")]
     Length {
         /// Bytes announced.
@@ -95,7 +95,7 @@ pub enum EnvelopeError {
         /// Bytes present.
         found: u64,
     },
-    /// The body does not have the checksum of the header.
+    /// The checksum of the body differs from that in the header.
     #[error("the record is damaged: its checksum does not match its content")]
     Checksum,
     /// The body cannot be decoded.
@@ -197,7 +197,7 @@ fn checked_body(kind: Kind, bytes: &[u8]) -> Result<&[u8], EnvelopeError> {
     Ok(body)
 }
 
-/// The 64-bit FNV-1a hash. It detects accidents, not deliberate changes.
+/// The 64-bit FNV-1a hash. It detects accidental changes, not deliberate ones.
 pub fn checksum(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)

@@ -1,7 +1,7 @@
 //! `grasps.json`: ranked grasps on one object, in the frame of the user's cloud.
 //!
-//! Version 1 is written. Versions 1 and 2 are read: the keys of version 2 are optional fields here,
-//! so that a reader sees one type. Keys that are not known are ignored.
+//! Version 1 is written. Versions 1 and 2 are read; the keys of version 2 are optional fields, so
+//! that both versions have one type. Unknown keys are ignored.
 
 mod contact;
 mod convention;
@@ -19,8 +19,8 @@ pub use convention::{
 pub use hand::{ExecutionRecord, HandRecord, JointRecord, JointUnit, PoseRecord};
 pub use source::SourceRecord;
 
-/// Version of the layout of `grasps.json` that is written. Keys with a default may be added without
-/// a new version.
+/// The version of `grasps.json` that is written. Keys with a default may be added without a new
+/// version.
 pub const GRASPS_VERSION: u32 = 1;
 
 /// The newest version that is read.
@@ -54,7 +54,7 @@ pub enum GraspsFileError {
     },
 }
 
-/// A whole `grasps.json`: lengths in metres, angles in radians, in the frame of the cloud.
+/// The content of a `grasps.json`: lengths in metres, angles in radians, in the frame of the cloud.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GraspsFile {
     /// Version of the layout; [`GRASPS_VERSION`] when written.
@@ -91,7 +91,7 @@ pub struct ObjectRecord {
     /// The plane on which the object stands; version 2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub support: Option<SupportRecord>,
-    /// What the user should know about the object, one sentence each; version 2.
+    /// Warnings to the user about the object, one sentence each; version 2.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
 }
@@ -127,19 +127,20 @@ pub struct GraspRecord {
     /// Unit normals at the contacts, into the object.
     pub inward_normals: Vec<[f64; 3]>,
     /// Unit vectors of the contacts on the sphere of parameters: the point of (S²)^m. For a radial
-    /// surface they point from the object's `centre_m` to the contacts. Empty in older files.
+    /// surface they are the directions from the object's `centre_m` to the contacts. Empty in older
+    /// files.
     #[serde(default)]
     pub directions: Vec<[f64; 3]>,
-    /// Where the grasp comes from.
+    /// Origin of the grasp.
     pub source: SourceRecord,
-    /// The hand that takes the grasp; `null` where no hand has been fitted to the contacts.
+    /// The hand of the grasp; `null` if no hand has been fitted to the contacts.
     pub hand: Option<HandRecord>,
-    /// What version 2 adds.
+    /// The keys of version 2.
     #[serde(flatten)]
     pub assessment: AssessmentRecord,
 }
 
-/// How far a grasp can be trusted (version 2).
+/// Numbers that say how reliable a grasp is (version 2).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct AssessmentRecord {
     /// Proved lower bound of the quality.
@@ -157,7 +158,7 @@ pub struct AssessmentRecord {
     /// The numbers from which `hold` was computed, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub hold_parts: BTreeMap<String, f64>,
-    /// The contacts with the evidence for them.
+    /// The contacts, each with the evidence for it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contacts: Vec<ContactRecord>,
 }
@@ -205,7 +206,8 @@ impl GraspsFile {
 }
 
 impl GraspRecord {
-    /// Contacts and normals are of one number; directions and evidence too, where they are given.
+    /// Checks that there are as many normals as contacts, and as many directions and evidence
+    /// records if there are any.
     fn check_lengths(&self, grasp: usize) -> Result<(), GraspsFileError> {
         let contacts = self.contacts_m.len();
         let optional = [

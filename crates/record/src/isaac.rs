@@ -12,8 +12,8 @@ use crate::grasps::{GraspsFile, HandRecord, JointRecord};
 ///
 /// `position` (metres) and `orientation` (quaternion) are the pose of the palm in the frame of the
 /// cloud. `cspace_position` holds the driven joints in the grasp (radians, or metres for prismatic
-/// joints), and `pregrasp_cspace_position` the same before the fingers close. The format wants a
-/// `confidence` in [0, 1]; it is the quality, cut at 1.
+/// joints), and `pregrasp_cspace_position` the same before the fingers close. The format requires a
+/// `confidence` in [0, 1]; it is the quality, clamped to 1.
 pub fn isaac_grasps(file: &GraspsFile) -> String {
     let hands = || {
         file.grasps
@@ -71,10 +71,10 @@ fn joints(text: &mut String, key: &str, values: &BTreeMap<String, JointRecord>) 
     }
 }
 
-/// The shortest digits that read back as the same number, with a decimal point and without an
-/// exponent, because readers of YAML 1.1 take `1e-7` for a string.
+/// The shortest decimal number that reads back as the same value, with a decimal point and without
+/// an exponent, because readers of YAML 1.1 read `1e-7` as a string.
 fn number(value: f64) -> String {
-    // Adding 0 leaves no negative zero.
+    // Adding 0 turns −0 into 0.
     let digits = (value + 0.0).to_string();
     if digits.contains('.') {
         digits
@@ -83,7 +83,7 @@ fn number(value: f64) -> String {
     }
 }
 
-/// A double-quoted scalar; a JSON string is one in YAML too.
+/// A double-quoted scalar; a JSON string is also a YAML one.
 fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }

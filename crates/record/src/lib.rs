@@ -1,12 +1,12 @@
-//! The file types of moduli: what is stored, each with a version.
+//! The versioned file formats of moduli.
 //!
 //! - [`ShapeRecord`], [`SphericalRecord`], [`LibraryRecord`] and [`LibraryObjectRecord`] are binary
-//!   files. [`envelope`] puts a header in front of them that names the kind and the version and carries a checksum of the body.
+//!   files. [`envelope`] gives them a header with the kind, the version and a checksum of the body.
 //! - [`GraspsFile`] is `grasps.json`; [`isaac_grasps`] writes its grasps as YAML for Isaac Sim.
 //!
 //! This crate depends on no other crate of the project, so a program that only reads files needs
-//! nothing else. The types hold plain numbers and are not checked for their meaning: a stored
-//! radius function, for example, is proved positive again by the crate that turns it into a shape.
+//! nothing else. The types hold plain numbers whose meaning is not checked. For example, the crate
+//! that turns a stored radius function into a shape proves again that it is positive.
 //!
 //! A library is written and read back:
 //!

@@ -22,9 +22,9 @@ pub struct LibraryRecord {
 /// One known object.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LibraryEntry {
-    /// Short identity, such as `S5`.
+    /// Short identifier, such as `S5`.
     pub id: String,
-    /// Name for people, such as "shampoo bottle".
+    /// Readable name, such as "shampoo bottle".
     pub name: String,
     /// Its surface.
     pub shape: ShapeRecord,
@@ -48,10 +48,10 @@ pub struct LibraryGrasp {
     pub joints_rad: Vec<f64>,
 }
 
-/// One known object in a file of its own, as a user's library folder holds it.
+/// One known object in its own file, as in a user's library folder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LibraryObjectRecord {
-    /// Digest of everything that the object was made from: the same digest gives the same object.
+    /// Digest of all inputs that the object was made from: equal digests give equal objects.
     pub made_from: String,
     /// The library that holds this one object.
     pub library: LibraryRecord,
@@ -88,7 +88,8 @@ impl LibraryGrasp {
         )
     }
 
-    /// The directions of the contacts; `None` when a stored vector is not of unit length to 1e-6.
+    /// The directions of the contacts; `None` if the length of a stored vector differs from 1 by
+    /// more than 1e-6.
     pub fn directions(&self) -> Option<Vec<UnitVector3<f64>>> {
         self.directions
             .iter()

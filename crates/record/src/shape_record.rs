@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::envelope::{self, EnvelopeError, Kind};
 
-/// A radius function on the sphere, and where its cloud stood.
+/// A radius function on the sphere, and the position of its cloud.
 ///
 /// The surface is r(p) p in the centred frame, r(p) = Σ β_{l,m} Y_{l,m}(p), with real orthonormal
 /// harmonics without the Condon–Shortley phase.

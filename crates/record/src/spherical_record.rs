@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::envelope::{self, EnvelopeError, Kind};
 
-/// A map of the sphere into space, and where its cloud stood.
+/// A map of the sphere into space, and the position of its cloud.
 ///
 /// The surface is f = (x, y, z) in the centred frame, each coordinate Σ β_{l,m} Y_{l,m}(p) with real
 /// orthonormal harmonics without the Condon–Shortley phase.
@@ -36,7 +36,7 @@ impl SphericalRecord {
     /// Reads the bytes of a file of this shape.
     ///
     /// The coefficients are not checked: they may have the wrong number, be NaN, or describe a map
-    /// that is no immersion.
+    /// that is not an immersion.
     ///
     /// # Errors
     /// The bytes are not a spherical shape of a version that is read, or are damaged.

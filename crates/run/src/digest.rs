@@ -7,8 +7,8 @@ use std::sync::OnceLock;
 
 /// FNV-1a with 128 bits.
 ///
-/// It tells contents apart that differ by accident; it is no defence against an attacker. The
-/// result depends neither on the machine nor on the version of the compiler.
+/// It distinguishes contents that differ by accident; it does not resist deliberate collisions. The
+/// result depends neither on the machine nor on the compiler.
 ///
 /// ```
 /// let mut digest = run::Digest::new();
@@ -25,7 +25,7 @@ impl Default for Digest {
 }
 
 impl Digest {
-    /// The digest of nothing.
+    /// The digest of no bytes.
     pub const fn new() -> Self {
         Self(0x6c62_272e_07bb_0142_62b8_2175_6295_c58d)
     }
@@ -51,12 +51,12 @@ impl Digest {
     }
 }
 
-/// The digest of the running program's own file, which changes with every change of the code.
+/// The digest of the running program's executable, which changes with every change of the code.
 ///
-/// It is computed once per process; a release program of 20 MB takes about 30 ms.
+/// It is computed once per process; an executable of 20 MB takes about 30 ms.
 ///
 /// # Errors
-/// The file of the program cannot be read.
+/// The executable cannot be read.
 pub fn of_this_program() -> io::Result<Digest> {
     static DIGEST: OnceLock<Digest> = OnceLock::new();
     if let Some(digest) = DIGEST.get() {
@@ -66,7 +66,7 @@ pub fn of_this_program() -> io::Result<Digest> {
     Ok(*DIGEST.get_or_init(|| digest))
 }
 
-/// The file that runs. On Linux this finds it even after a new build has replaced it.
+/// The running executable. On Linux it is found even after a new build has replaced it.
 fn program_file() -> io::Result<File> {
     if cfg!(target_os = "linux") {
         return File::open(Path::new("/proc/self/exe"));

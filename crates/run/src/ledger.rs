@@ -1,10 +1,10 @@
-//! Results of long computations, kept so that an interrupted run goes on where it was.
+//! Stored results of long computations, so that an interrupted run can continue.
 //!
-//! A kept result is used again only if
-//! - its [`Key`] is the same: the digest of all inputs and options, and of the program itself, and
-//! - its checksum is right: the result is what the program wrote.
+//! A stored result is used again only if
+//! - its [`Key`] is equal: the digest of all inputs and options, and of the program itself, and
+//! - its checksum is correct: the result has not changed since it was written.
 //!
-//! Everything else is computed again.
+//! All other results are recomputed.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Write};
@@ -17,7 +17,7 @@ use serde_json::{Map, Value, json};
 
 use crate::digest::{self, Digest};
 
-/// Everything that a result depends on, as a digest.
+/// Digest of everything that a result depends on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Key(String);
 
@@ -41,7 +41,7 @@ impl Key {
             .map(|(name, content)| (name.as_bytes(), *content));
         let program = program.hex();
         for (name, content) in named.chain([(&b"program"[..], program.as_bytes())]) {
-            // Lengths keep the parts apart.
+            // Lengths separate the parts.
             for part in [name, content] {
                 digest.update(&(part.len() as u64).to_le_bytes());
                 digest.update(part);
@@ -56,22 +56,22 @@ impl Key {
     }
 }
 
-/// The checksum of a result under a key; fails where the result cannot be written as JSON.
+/// The checksum of a result under a key; an error if the result cannot be written as JSON.
 fn checksum(key: &Key, result: &impl Serialize) -> serde_json::Result<String> {
     let mut digest = Digest::of(key.0.as_bytes());
     digest.update(&serde_json::to_vec(result)?);
     Ok(digest.hex())
 }
 
-/// Why a ledger cannot be kept.
+/// Why a result cannot be stored.
 #[derive(Debug, thiserror::Error)]
 pub enum LedgerError {
-    /// The system refuses.
+    /// The file cannot be created, read or written.
     #[error("cannot keep results in `{}`: {source}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the operating system.
         source: io::Error,
     },
     /// A result cannot be written as JSON.
@@ -81,8 +81,8 @@ pub enum LedgerError {
 
 /// A file of results, one line of JSON per job.
 ///
-/// The first line holds the key; every other line a job's number, its result and its checksum.
-/// Appending is safe from many threads.
+/// The first line holds the key. Every other line holds a job's index, its result and its checksum.
+/// Many threads may append at once.
 ///
 /// ```
 /// use run::{Key, Ledger};
@@ -108,13 +108,13 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Opens a file of results, and makes it and its folder where needed.
+    /// Opens a file of results; creates it and its folder if they do not exist.
     ///
-    /// Returns the kept results, one entry per job. Under another key the file begins again. A line
-    /// that is cut off, changed or not of this type, and everything after it, is dropped.
+    /// Returns the stored results, one entry per job. If the file has another key, it is emptied. A
+    /// line that is truncated, changed or not of this type is discarded with everything after it.
     ///
     /// # Errors
-    /// The system refuses to make, read or write the file.
+    /// The file cannot be created, read or written.
     pub fn open<R: DeserializeOwned>(
         path: &Path,
         key: &Key,
@@ -151,7 +151,7 @@ impl Ledger {
     /// Adds the result of a job.
     ///
     /// # Errors
-    /// The result cannot be written as JSON, or the system refuses.
+    /// The result cannot be written as JSON, or the file cannot be written.
     pub fn append<R: Serialize>(&self, job: usize, result: &R) -> Result<(), LedgerError> {
         let entry = json!({ "job": job, "result": serde_json::to_value(result)? });
         let checksum = checksum(&self.key, &entry)?;
@@ -170,7 +170,7 @@ impl Ledger {
     }
 }
 
-/// The results of all good lines, and the number of bytes that they take.
+/// The results of all valid lines, and the number of bytes of these lines.
 fn good_lines<R: DeserializeOwned>(text: &[u8], key: &Key, jobs: usize) -> (Vec<Option<R>>, usize) {
     let mut results: Vec<Option<R>> = Vec::new();
     results.resize_with(jobs, || None);
@@ -208,9 +208,9 @@ fn good_line<R: DeserializeOwned>(line: &[u8], key: &Key) -> Option<(usize, R)> 
     Some((job, result))
 }
 
-/// Marks a result that is a JSON object of its own, so that [`is_sealed`] finds it unchanged.
+/// Adds a seal to a result that is a JSON object, so that [`is_sealed`] can detect changes.
 ///
-/// The mark is the object `value[name]`; `key` and `checksum` are put into it.
+/// The seal is the object `value[name]`, to which `key` and `checksum` are added.
 ///
 /// # Errors
 /// The value cannot be written as JSON.

@@ -1,12 +1,12 @@
-//! What the programs of moduli share: whole-file writes, resumable work, and `.npy` tables.
+//! What the programs of moduli share: whole-file writes, resumable computations, and `.npy` tables.
 //!
-//! - [`write()`] puts a result into a file. A reader sees the old file or the whole new one; a
-//!   device, a pipe or the target of a symbolic link is written to and not replaced; an input is
+//! - [`write()`] writes a result to a file. A reader sees either the old file or the whole new one.
+//!   A device, a pipe or the target of a symbolic link is written to and not replaced. An input is
 //!   never overwritten.
-//! - [`ledger`] keeps the results of a long computation, so that an interrupted run goes on where
-//!   it was. A result is used again only if it depends on the same inputs and the same program, and
-//!   has not been changed since.
-//! - [`npy`] reads and writes tables of doubles as NumPy does.
+//! - [`ledger`] stores the results of a long computation, so that an interrupted run can continue.
+//!   A result is used again only if its inputs and the program are the same and it has not been
+//!   changed.
+//! - [`npy`] reads and writes tables of doubles in NumPy's format.
 //!
 //! ```
 //! let folder = tempfile::tempdir()?;

@@ -6,12 +6,12 @@
 use std::ops::Range;
 
 const MAGIC: &[u8] = b"\x93NUMPY";
-/// Header and data begin at multiples of this, as NumPy writes them.
+/// Alignment of the header and the data in bytes, as NumPy writes them.
 const ALIGNMENT: usize = 64;
-/// Longest header that is read. That of a table of doubles has about 80 bytes.
+/// Longest header that is read, bytes. The header of a table of doubles has about 80.
 const MAX_HEADER: usize = 4096;
 
-/// A table, row after row.
+/// A table, stored row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     columns: usize,
@@ -24,25 +24,25 @@ pub enum NpyError {
     /// The bytes do not begin as a `.npy` file does.
     #[error("not a .npy file: it does not begin with the mark \\x93NUMPY")]
     Magic,
-    /// The version of the format is not known.
+    /// The version of the format is not supported.
     #[error("a .npy file of version {major}; versions 1 to 3 are read")]
     Version {
         /// The major version found.
         major: u8,
     },
-    /// The header cannot be read.
+    /// The header lacks a key or has an unreadable value.
     #[error(
         "the header of the .npy file, `{header}`, has no readable `{key}`; expected {expected}"
     )]
     Header {
         /// The header, or its beginning.
         header: String,
-        /// The key.
+        /// The key that is missing or unreadable.
         key: &'static str,
         /// What was expected.
         expected: &'static str,
     },
-    /// The file ends too early.
+    /// The file is shorter than its header states.
     #[error("the .npy file has {found} bytes; its header says {expected}")]
     Length {
         /// Bytes expected.
@@ -50,7 +50,7 @@ pub enum NpyError {
         /// Bytes found.
         found: usize,
     },
-    /// The table has another shape.
+    /// The array has another shape than expected.
     #[error("an array of shape {found:?}; expected N×{columns}")]
     Shape {
         /// The shape found.
@@ -93,11 +93,10 @@ impl Table {
         header.table(bytes, rows, columns)
     }
 
-    /// Reads an array of any number of axes as rows: an array of one axis is one row, and all axes
-    /// but the first are one after the other in a row, as NumPy's `reshape(N, -1)` puts them.
-    ///
+    /// Reads an array of any number of axes as rows. An array of one axis is one row. All axes but
+    /// the first are flattened into a row, as by NumPy's `reshape(N, -1)`.
     /// # Errors
-    /// Those of [`Table::from_npy`]; an array of three axes or more in Fortran order.
+    /// As [`Table::from_npy`], or an array of three axes or more is in Fortran order.
     pub fn from_npy_flattened(bytes: &[u8]) -> Result<Self, NpyError> {
         let header = Header::parse(bytes)?;
         let (rows, columns) = match header.shape[..] {
@@ -112,10 +111,10 @@ impl Table {
         header.table(bytes, rows, columns)
     }
 
-    /// Reads a table with a known number of columns.
+    /// Reads a table whose number of columns is known.
     ///
     /// # Errors
-    /// Those of [`Table::from_npy`], or the table has another number of columns.
+    /// As [`Table::from_npy`], or the table has another number of columns.
     pub fn from_npy_with_columns(bytes: &[u8], columns: usize) -> Result<Self, NpyError> {
         let wrong = |found| NpyError::Shape {
             found,
@@ -165,7 +164,7 @@ impl Table {
     }
 }
 
-/// How a number is stored.
+/// The storage format of a number.
 #[derive(Clone, Copy)]
 struct Number {
     is_double: bool,
@@ -196,7 +195,7 @@ impl Number {
         if self.is_double { 8 } else { 4 }
     }
 
-    /// The number in `bytes`, which are of its size.
+    /// The number stored in `bytes`, whose length is the size of the format.
     fn read(self, bytes: &[u8]) -> f64 {
         let mut word = [0; 8];
         let word = &mut word[..bytes.len()];
@@ -231,14 +230,14 @@ impl Header {
         }
     }
 
-    /// The numbers behind the header, as rows.
+    /// The numbers after the header, as rows.
     fn table(&self, bytes: &[u8], rows: u64, columns: u64) -> Result<Table, NpyError> {
         if columns == 0 {
             return Err(self.wrong_shape());
         }
         let data = &bytes[self.data_start..];
         let size = self.number.size();
-        // The size is compared before anything is allocated.
+        // The size is checked before memory is allocated.
         let expected = u128::from(rows)
             .saturating_mul(u128::from(columns))
             .saturating_mul(size as u128);
@@ -291,7 +290,7 @@ impl Header {
     }
 }
 
-/// Where the text of the header stands.
+/// The byte range of the header's text.
 fn header_range(bytes: &[u8]) -> Result<Range<usize>, NpyError> {
     let short = |expected: usize| NpyError::Length {
         expected: expected as u128,
@@ -327,7 +326,7 @@ fn header_range(bytes: &[u8]) -> Result<Range<usize>, NpyError> {
     Ok(range)
 }
 
-/// The text that follows `'key':` in a Python dictionary whose values hold no such text.
+/// The text after `'key':` in a Python dictionary; no value may contain that text.
 fn value_of<'a>(header: &'a str, key: &str) -> Option<&'a str> {
     let mut quotes = ['\'', '"'].into_iter();
     let rest = quotes.find_map(|quote| {
@@ -353,7 +352,7 @@ fn tuple(text: &str) -> Option<Vec<u64>> {
     let parts = inside.split(',').map(str::trim);
     parts
         .filter(|part| !part.is_empty())
-        // Python 2 wrote long integers with an L.
+        // Python 2 writes long integers with a suffix L.
         .map(|part| part.trim_end_matches('L').parse().ok())
         .collect()
 }

@@ -1,4 +1,4 @@
-//! Results as files.
+//! Writing results to files.
 
 mod part;
 mod target;
@@ -13,7 +13,7 @@ use target::{Identity, Target};
 /// Why a result is not written.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
-    /// The path ends in no name, such as `..`.
+    /// The path has no file name, such as `..`.
     #[error("`{}` names no file", path.display())]
     NoName {
         /// The path.
@@ -25,36 +25,36 @@ pub enum WriteError {
         /// The path.
         path: PathBuf,
     },
-    /// The result would replace a file that the program reads.
+    /// The result would replace an input of the program.
     #[error("`{}` is an input; its result needs another name", path.display())]
     Input {
         /// The path.
         path: PathBuf,
     },
-    /// Two results would have one name, so that one of them would be lost.
+    /// Two results have the same path, so that one would be lost.
     #[error("two results would be written to `{}`; one of them needs another name", path.display())]
     Twice {
         /// The path.
         path: PathBuf,
     },
-    /// The file may not be written.
+    /// The file is read-only.
     #[error("`{}` is read-only; it is left as it is", path.display())]
     ReadOnly {
         /// The path.
         path: PathBuf,
     },
-    /// The system refuses.
+    /// The operating system reports an error.
     #[error("cannot write `{}`: {source}", path.display())]
     Io {
         /// The path.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the operating system.
         source: io::Error,
     },
 }
 
 impl WriteError {
-    /// Whether the user asked for something that cannot be, as opposed to a refusal by the system.
+    /// Whether the cause is the request (such as a wrong path) and not the operating system.
     pub fn is_usage(&self) -> bool {
         match self {
             Self::NoName { .. } | Self::Folder { .. } | Self::Input { .. } | Self::Twice { .. } => {
@@ -67,21 +67,21 @@ impl WriteError {
 
 /// Writes a whole result.
 ///
-/// - A regular file, or a new one, is written under a temporary name in the same folder, flushed to
-///   the disk and renamed. A reader sees the old file or the whole new one. Permissions of an
-///   existing file are kept. Missing folders are made.
-/// - A symbolic link stays; its target is written.
-/// - A device or a pipe is written to. Where it is the standard output of the program, the bytes
-///   take their place among what the program prints.
-/// - A failed write leaves nothing behind: no temporary file, and no folder that it made. On Linux
-///   the temporary file has no name while it is written, where the file system allows it, so a
-///   program that is killed leaves nothing behind either.
+/// - A regular or new file is written under a temporary name in the same folder, flushed to the
+///   disk and renamed. A reader sees either the old file or the whole new one. The permissions of
+///   an existing file are kept. Missing folders are created.
+/// - A symbolic link is kept; its target is written.
+/// - A device or a pipe is written to. If it is the standard output of the program, the bytes
+///   follow what the program has printed.
+/// - After a failed write no temporary file and no new folder remains. On Linux the temporary file
+///   has no name while it is written, if the file system supports that, so nothing remains of a
+///   program that is killed either.
 ///
 /// `inputs` are the files that the program reads.
 ///
 /// # Errors
-/// The path names no file or a folder, is one of `inputs` (also through a link), is read-only, or
-/// the system refuses.
+/// The path has no file name or is a folder, the file is one of `inputs` (also through a link) or
+/// read-only, or the operating system reports an error.
 pub fn write<P: AsRef<Path>>(path: &Path, bytes: &[u8], inputs: &[P]) -> Result<(), WriteError> {
     let target = Target::of(path)?;
     refuse_input(path, &target, inputs)?;
@@ -95,10 +95,10 @@ pub fn write<P: AsRef<Path>>(path: &Path, bytes: &[u8], inputs: &[P]) -> Result<
     }
 }
 
-/// Checks the names of results before the work begins.
+/// Checks the paths of results before the computation begins.
 ///
 /// # Errors
-/// Two results have one name, or one of them could not be written by [`write()`].
+/// Two results have the same path, or [`write()`] would refuse one of them.
 pub fn check_results<P: AsRef<Path>, Q: AsRef<Path>>(
     results: &[P],
     inputs: &[Q],
@@ -145,7 +145,7 @@ fn refuse_input<P: AsRef<Path>>(
 fn write_through(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = match target::standard_output(path) {
         Some(output) => {
-            // What has been printed comes first.
+            // Flush what has been printed before.
             io::stdout().lock().flush()?;
             output
         }
@@ -155,20 +155,20 @@ fn write_through(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.flush()
 }
 
-/// Writes a file beside `path` and renames it.
+/// Writes a temporary file in the folder of `path` and renames it.
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
     let mut made = MadeFolders::make(folder)?;
     Part::write(folder, bytes, path)?.rename(path)?;
     made.keep();
-    // The name is on the disk when its folder is. Some file systems cannot flush a folder, and the
-    // file itself is complete, so a refusal is no failure.
+    // The new name is on the disk only after the folder is flushed. Some file systems cannot flush
+    // a folder; the file itself is complete, so that error is ignored.
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
     Ok(())
 }
 
-/// Folders that a write made, the deepest first, which are removed unless the write succeeds.
+/// Folders that a write created, the deepest first; they are removed unless the write succeeds.
 struct MadeFolders(Vec<PathBuf>);
 
 impl MadeFolders {
@@ -190,7 +190,7 @@ impl MadeFolders {
 impl Drop for MadeFolders {
     fn drop(&mut self) {
         for folder in &self.0 {
-            // A folder that another program has used in the meantime is not empty and stays.
+            // A folder that another program has used meanwhile is not empty and is kept.
             let _ = fs::remove_dir(folder);
         }
     }

@@ -1,24 +1,24 @@
-//! A convention of quality, spelled out.
+//! A convention of quality with all its numbers.
 
 use serde::{Deserialize, Serialize};
 
-/// Tolerance of round cones in files from before it was written down.
+/// Tolerance of round cones in files that do not state it.
 const OLDER_TOLERANCE: f64 = 1e-4;
 
-/// A convention of quality, spelled out: everything that turns contacts into a number.
+/// A convention of quality: all rules and numbers that determine the quality of contacts.
 ///
-/// In JSON `edges` is the number of edges of the friction pyramid, or `null` for the round cone, of
-/// which `tolerance` then says how wide its intervals may be. `tangent` is `least_aligned` or
+/// In JSON `edges` is the number of edges of the friction pyramid, or `null` for the round cone;
+/// `tolerance` is then the width that its intervals may have. `tangent` is `least_aligned` or
 /// `projected`, the latter with the vector `tangent_axis`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Keys", into = "Keys")]
 pub struct ConventionRecord {
     /// Its name.
     pub name: String,
-    /// How long the edges of a friction cone are.
+    /// Normalisation of the edges of a friction cone.
     pub edge_norm: EdgeNormRecord,
-    /// The length that divides torques, metres; `None` where the convention takes the largest
-    /// distance of a contact from the centre.
+    /// The length that divides torques, metres; `None` if the convention takes the largest distance
+    /// of a contact from the centre.
     pub torque_length_m: Option<f64>,
     /// The point about which torques are taken.
     pub centre: CentreRecord,
@@ -26,13 +26,13 @@ pub struct ConventionRecord {
     pub friction: f64,
     /// How a friction cone is represented.
     pub edges: EdgesRecord,
-    /// What is reported for grasps that are not closed.
+    /// The value reported for grasps that are not closed.
     pub not_closed: f64,
-    /// Where the first edge of each friction pyramid points.
+    /// The rule for the first edge of each friction pyramid.
     pub tangent: TangentRecord,
-    /// A grasp is stable from this quality on; version 2.
+    /// Quality above which a grasp is stable; version 2.
     pub stable_above: Option<f64>,
-    /// What a contact transmits beside friction; `None` for hard points. Version 2.
+    /// What a contact transmits besides friction; `None` for point contacts. Version 2.
     pub contact: Option<ContactModelRecord>,
 }
 
@@ -52,7 +52,7 @@ pub enum ContactModelRecord {
     },
 }
 
-/// How long the edges of a friction cone are.
+/// Normalisation of the edges of a friction cone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EdgeNormRecord {
@@ -88,7 +88,7 @@ pub enum EdgesRecord {
     },
 }
 
-/// Where the first edge of each friction pyramid points.
+/// The rule for the first edge of each friction pyramid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TangentRecord {
     /// Along the projection of the coordinate axis least aligned with the normal.
@@ -119,7 +119,7 @@ struct Keys {
     contact: Option<ContactModelRecord>,
 }
 
-/// The first value is that of files from before the key.
+/// The default is the value of files that lack the key.
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum TangentName {

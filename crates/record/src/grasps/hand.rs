@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 
 /// A hand at a grasp.
 ///
-/// In JSON the joints stand twice: `joints` {name: {value, unit}} says the unit of each value;
-/// `joints_rad` {name: value} is the older key, which holds metres for prismatic joints. The same
-/// holds for `pregrasp_joints` and `pregrasp_joints_rad`. The older keys hold the driven joints alone. A file with the older keys alone is read,
-/// and its joints have no unit.
+/// In JSON the joints are stored twice. `joints` {name: {value, unit}} states the unit of each
+/// value. `joints_rad` {name: value} is the older key; it holds metres for prismatic joints, and
+/// the driven joints alone. The same holds for `pregrasp_joints` and `pregrasp_joints_rad`. A file
+/// with only the older keys can be read; its joints then have no unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "Keys", into = "Keys")]
 pub struct HandRecord {
@@ -20,27 +20,27 @@ pub struct HandRecord {
     pub palm_link: String,
     /// Pose of the palm in the frame of the cloud; the key is `object_from_palm`.
     pub cloud_from_palm: PoseRecord,
-    /// The joints in the grasp, by name: the driven ones and those that follow them.
+    /// The joints in the grasp, by name: the driven ones and those that follow them (mimic joints).
     pub joints: BTreeMap<String, JointRecord>,
     /// The same joints before the fingers closed; empty in older files.
     pub pregrasp_joints: BTreeMap<String, JointRecord>,
-    /// Largest distance from a contact that this hand makes to the grasp's own contact, metres; 0
-    /// where the grasp's contacts are those of the hand.
+    /// Largest distance from a contact of this hand to the grasp's own contact, metres; 0 if the
+    /// grasp's contacts are those of the hand.
     pub contact_error_m: f64,
-    /// What version 2 adds.
+    /// The keys of version 2.
     pub execution: ExecutionRecord,
 }
 
-/// What a robot needs beyond the pose and the joints (version 2).
+/// What a robot needs besides the pose and the joints (version 2).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ExecutionRecord {
-    /// The joints at which the tips touch the surface.
+    /// Joint values at which the tips touch the surface.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub grasp_joints: BTreeMap<String, JointRecord>,
-    /// Commanded joints beyond contact, which make the fingers press.
+    /// Commanded joint values beyond contact, so that the fingers press.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub squeeze_joints: BTreeMap<String, JointRecord>,
-    /// Efforts of the driven joints while pressing, N m, or N for prismatic joints.
+    /// Efforts of the driven joints while pressing: N m, or N for prismatic joints.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub squeeze_effort: BTreeMap<String, f64>,
     /// Unit vector along which the palm approaches.
@@ -56,9 +56,10 @@ pub struct ExecutionRecord {
 pub struct JointRecord {
     /// The value in its unit.
     pub value: f64,
-    /// The unit; `null` for a joint of an older file, which does not say whether it slides.
+    /// The unit; `null` for a joint of an older file, which does not state whether it is prismatic.
     pub unit: Option<JointUnit>,
-    /// The driven joint that this one follows (a mimic joint of the URDF); absent where it is driven.
+    /// The driven joint that this one follows (a mimic joint of the URDF); absent for a driven
+    /// joint.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub follows: Option<String>,
 }
@@ -66,10 +67,10 @@ pub struct JointRecord {
 /// Unit of a joint's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum JointUnit {
-    /// Radians, of a joint that turns.
+    /// Radians, for a revolute joint.
     #[serde(rename = "rad")]
     Radians,
-    /// Metres, of a joint that slides.
+    /// Metres, for a prismatic joint.
     #[serde(rename = "m")]
     Metres,
 }
@@ -93,7 +94,7 @@ impl From<&Isometry3<f64>> for PoseRecord {
 }
 
 impl PoseRecord {
-    /// The transform; `None` when the quaternion has length zero.
+    /// The transform; `None` if the quaternion has length zero.
     pub fn isometry(&self) -> Option<Isometry3<f64>> {
         let [x, y, z, w] = self.quaternion_xyzw;
         let turn = UnitQuaternion::try_new(Quaternion::new(w, x, y, z), 1e-9)?;
@@ -123,7 +124,7 @@ struct Keys {
     execution: ExecutionRecord,
 }
 
-/// Joints with their units where the file has them, else those of the older key.
+/// Joints with their units if the file has them, else those of the older key.
 fn with_units(
     joints: BTreeMap<String, JointRecord>,
     older: BTreeMap<String, f64>,

@@ -1,11 +1,11 @@
-//! Where a grasp comes from.
+//! The origin of a grasp.
 
 use serde::{Deserialize, Serialize};
 
-/// Where a grasp comes from.
+/// The origin of a grasp.
 ///
-/// In JSON an object with the keys `kind`, `from`, `shape_distance_m` and `source_quality`; the last
-/// three are `null` for everything but a transfer.
+/// In JSON an object with the keys `kind`, `from`, `shape_distance_m` and `source_quality`; the
+/// last three are `null` except for a transfer.
 ///
 /// ```
 /// use record::grasps::SourceRecord;
@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 pub enum SourceRecord {
     /// A hand was closed on the object.
     Synthesis,
-    /// A grasp was carried over from another object.
+    /// The grasp was transferred from another object.
     Transfer {
         /// Id and name of the other object.
         from: Option<String>,
@@ -30,7 +30,7 @@ pub enum SourceRecord {
         /// Quality of the grasp on the other object.
         source_quality: Option<f64>,
     },
-    /// Another program's word for where its grasp comes from.
+    /// The name that another program gives to the origin of its grasp.
     Other(String),
 }
 
@@ -47,7 +47,7 @@ struct Keys {
 }
 
 impl SourceRecord {
-    /// The value of the key `kind`: `synthesis`, `transfer`, or another program's word.
+    /// The value of the key `kind`: `synthesis`, `transfer`, or another program's name.
     pub fn kind(&self) -> &str {
         match self {
             Self::Synthesis => "synthesis",
@@ -56,7 +56,7 @@ impl SourceRecord {
         }
     }
 
-    /// Quality on the object from which the grasp was carried over, where it is known.
+    /// Quality on the object from which the grasp was transferred, if known.
     pub fn source_quality(&self) -> Option<f64> {
         match self {
             Self::Transfer { source_quality, .. } => *source_quality,

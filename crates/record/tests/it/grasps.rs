@@ -1,4 +1,4 @@
-//! `grasps.json`: what is written, and which files are read.
+//! `grasps.json`: what is written, and which files can be read.
 
 use record::grasps::{
     AssessmentRecord, CentreRecord, ConventionRecord, EdgeNormRecord, EdgesRecord, GRASPS_VERSION,
@@ -73,7 +73,7 @@ fn hand() -> Value {
     })
 }
 
-/// The file as JSON, changed.
+/// The file as JSON after a change.
 fn changed(change: impl FnOnce(&mut Value)) -> Result<GraspsFile, GraspsFileError> {
     let mut value = serde_json::to_value(file()).unwrap();
     change(&mut value);

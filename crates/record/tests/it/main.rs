@@ -1,4 +1,4 @@
-//! The tests of `record` that use it from outside, as one program.
+//! The integration tests of `record`, as one program.
 
 mod envelope;
 mod grasps;

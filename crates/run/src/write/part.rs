@@ -7,15 +7,15 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::target;
 
-/// A complete file under a temporary name, which is removed unless it is renamed.
+/// A complete file under a temporary name; it is removed on drop unless it was renamed.
 pub(super) struct Part {
     path: PathBuf,
     renamed: bool,
 }
 
 impl Part {
-    /// Writes a file in `folder` and flushes it to the disk. It gets the owner and the permissions of
-    /// the file `replaced`, where there is one.
+    /// Writes a file in `folder` and flushes it to the disk. It gets the owner and the permissions
+    /// of the file `replaced`, if that exists.
     pub(super) fn write(folder: &Path, bytes: &[u8], replaced: &Path) -> io::Result<Self> {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         let count = COUNT.fetch_add(1, Ordering::Relaxed);
@@ -42,7 +42,7 @@ impl Part {
         Ok(part)
     }
 
-    /// Gives the file its name.
+    /// Renames the file to `path`.
     pub(super) fn rename(mut self, path: &Path) -> io::Result<()> {
         fs::rename(&self.path, path)?;
         self.renamed = true;
@@ -53,7 +53,7 @@ impl Part {
 impl Drop for Part {
     fn drop(&mut self) {
         if !self.renamed {
-            // The first failure is the one to report.
+            // Only the first error is reported.
             let _ = fs::remove_file(&self.path);
         }
     }
@@ -68,7 +68,7 @@ fn fill(file: &mut File, bytes: &[u8], replaced: &Path) -> io::Result<()> {
     file.sync_all()
 }
 
-/// A file in a folder that has no name yet; `None` where the file system has no such files.
+/// An unnamed file in a folder; `None` if the file system does not support unnamed files.
 #[cfg(target_os = "linux")]
 fn unnamed(folder: &Path) -> Option<File> {
     use rustix::fs::{Mode, OFlags, open};

@@ -1,4 +1,4 @@
-//! What a path leads to.
+//! Resolution of the path of a result.
 
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io;
@@ -6,16 +6,17 @@ use std::path::{Path, PathBuf};
 
 use super::WriteError;
 
-/// Links that are followed before a path counts as a circle, as on Linux.
+/// Largest number of symbolic links that are followed, as on Linux; a longer chain counts as a
+/// cycle.
 const MAX_LINKS: usize = 40;
 
-/// Where bytes go.
+/// The destination of a write.
 pub(super) enum Target {
     /// A regular file, or a name that does not exist yet.
     File {
         /// The path without symbolic links.
         path: PathBuf,
-        /// Of an existing file.
+        /// Identity of the existing file; `None` for a new file.
         identity: Option<Identity>,
     },
     /// A device, pipe or socket.
@@ -23,7 +24,7 @@ pub(super) enum Target {
 }
 
 impl Target {
-    /// Follows links and looks at what is there.
+    /// Follows links and determines the kind of the destination.
     pub(super) fn of(path: &Path) -> Result<Self, WriteError> {
         let io_error = |source| WriteError::Io {
             path: path.to_owned(),
@@ -65,7 +66,7 @@ fn ends_in_separator(path: &Path) -> bool {
         .is_some_and(|last| std::path::is_separator(char::from(*last)))
 }
 
-/// The path of a new file, with its folder's links resolved as far as the folder exists.
+/// The absolute path of a new file; links are resolved in the part of it that exists.
 fn absolute(path: &Path) -> io::Result<PathBuf> {
     let path = std::path::absolute(path)?;
     for ancestor in path.ancestors().skip(1) {
@@ -88,7 +89,7 @@ fn follow_links(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("too many symbolic links"))
 }
 
-/// Refuses a file that says it may not be written, and one that the system keeps from this user.
+/// Refuses a file that is marked read-only and one that this user may not write.
 fn refuse_read_only(path: &Path, found: &Metadata) -> Result<(), WriteError> {
     let denied = || match OpenOptions::new().write(true).open(path) {
         Ok(_) => false,
@@ -102,12 +103,12 @@ fn refuse_read_only(path: &Path, found: &Metadata) -> Result<(), WriteError> {
     Ok(())
 }
 
-/// Which file a path leads to, whatever its name.
+/// The identity of a file, independent of its path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Identity(#[cfg(unix)] (u64, u64), #[cfg(not(unix))] PathBuf);
 
 impl Identity {
-    /// Of the file at the end of all links.
+    /// The identity of the file at the end of all links.
     #[cfg(unix)]
     pub(super) fn of(path: &Path) -> io::Result<Self> {
         Ok(Self::of_metadata(&fs::metadata(path)?))
@@ -119,14 +120,15 @@ impl Identity {
         Self((found.dev(), found.ino()))
     }
 
-    /// Of the file at the end of all links.
+    /// The identity of the file at the end of all links.
     #[cfg(not(unix))]
     pub(super) fn of(path: &Path) -> io::Result<Self> {
         fs::canonicalize(path).map(Self)
     }
 }
 
-/// Whether a path such as `/dev/stdout` is a link to the file into which the program prints.
+/// Whether a path such as `/dev/stdout` is a link to the file that the standard output is
+/// redirected to.
 #[cfg(unix)]
 fn leads_to_standard_output(path: &Path, found: &Metadata) -> bool {
     let is_link = fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink());
@@ -138,7 +140,7 @@ fn leads_to_standard_output(_: &Path, _: &Metadata) -> bool {
     false
 }
 
-/// The standard output where a path leads to it.
+/// The standard output if the path leads to it, else `None`.
 #[cfg(unix)]
 pub(super) fn standard_output(path: &Path) -> Option<File> {
     output_with(&Identity::of(path).ok()?)
@@ -157,13 +159,14 @@ fn output_with(identity: &Identity) -> Option<File> {
     (Identity::of_metadata(&found) == *identity).then_some(output)
 }
 
-/// Gives a file the owner and group of another, where the system allows it.
+/// Gives a file the owner and group of another, if permitted.
 #[cfg(unix)]
 pub(super) fn keep_owner(file: &File, old: &Metadata) {
     use std::os::unix::fs::{MetadataExt, fchown};
     let is_same = |new: &Metadata| (new.uid(), new.gid()) == (old.uid(), old.gid());
     if !file.metadata().is_ok_and(|new| is_same(&new)) {
-        // Only a privileged user can give files away; for others the file becomes their own.
+        // Only a privileged user may change the owner; otherwise the file belongs to the current
+        // user.
         let _ = fchown(file, Some(old.uid()), Some(old.gid()));
     }
 }

@@ -1,4 +1,4 @@
-//! Results that are kept, and those that are computed again.
+//! Which results are reused, and which are recomputed.
 
 use std::path::Path;
 
@@ -38,7 +38,7 @@ fn other_inputs_begin_again() {
     let file = folder.path().join("results.jsonl");
     three_of_five(&file);
     assert_eq!(kept(&file, &key("b")), [None; 5]);
-    // The file of the first key is gone.
+    // The results under the first key are discarded.
     assert_eq!(kept(&file, &key("a")), [None; 5]);
     std::fs::write(&file, "not a ledger").unwrap();
     assert_eq!(kept(&file, &key("a")), [None; 5]);
@@ -71,7 +71,7 @@ fn a_line_that_was_cut_off_is_done_again() {
     std::fs::write(&file, &text[..text.len() - 1]).unwrap();
     let two = [Some(0.0), Some(1.0 / 3.0), None, None, None];
     assert_eq!(kept(&file, &key("a")), two);
-    // What follows the whole lines is gone, so that new lines are whole.
+    // Everything after the valid lines is discarded, so that new lines are complete.
     let (ledger, _) = Ledger::open::<f64>(&file, &key("a"), 5).unwrap();
     ledger.append(4, &0.5).unwrap();
     let three = [Some(0.0), Some(1.0 / 3.0), None, None, Some(0.5)];

@@ -1,4 +1,4 @@
-//! The tests of `run` that use it from outside, as one program.
+//! The integration tests of `run`, as one program.
 
 mod ledger;
 mod npy;

@@ -101,7 +101,7 @@ fn a_failed_write_leaves_nothing_behind() {
     fs::write(&file, "kept").unwrap();
     let error = write(&file.join("a.json"), b"", &NO_INPUTS).unwrap_err();
     assert!(error.to_string().contains("a.json"), "{error}");
-    // No file system has names of this length: the folder is made, and removed again.
+    // No file system supports names of this length: the folder is created and removed again.
     let long = folder.path().join("made/too").join("n".repeat(300));
     let error = write(&long, b"", &NO_INPUTS).unwrap_err();
     assert!(matches!(error, WriteError::Io { .. }), "{error}");
