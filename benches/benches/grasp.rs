@@ -1,8 +1,8 @@
-//! Grasp quality: contacts to wrenches to the largest ball, closed and random grasps.
+//! Grasp quality: from contacts to wrenches to the largest ball, for closed and random grasps.
 //!
-//! Random grasps have contacts uniform in the ball of radius 2, inward normals uniform on the sphere
-//! and the centre at the origin. Every measurement walks through many grasps and divides by nothing:
-//! read the times as microseconds per 100 grasps.
+//! Random grasps have contacts uniform in the ball of radius 2, inward normals uniform on the
+//! sphere and the centre at the origin. Every measurement is the total time of a set of grasps:
+//! read it as microseconds per 100 grasps.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use grasp::{
@@ -41,7 +41,7 @@ fn convention(edges: Edges) -> Convention {
     }
 }
 
-/// Random grasps; with `closed`, those that are closed at eight edges.
+/// Random grasps; with `closed`, only those that are closed with eight edges.
 fn grasps(closed: bool) -> Vec<Vec<Contact>> {
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let eight = convention(Edges::Polygon(8));
@@ -88,7 +88,7 @@ fn epsilons(c: &mut Criterion) {
     }
 }
 
-/// A contact on an object of ten centimetres that presses against `outward`.
+/// A contact on an object of ten centimetres with inward normal −`outward`.
 fn on(position: Vector3<f64>, outward: Vector3<f64>) -> Contact {
     Contact {
         position: position.into(),
@@ -96,7 +96,7 @@ fn on(position: Vector3<f64>, outward: Vector3<f64>) -> Contact {
     }
 }
 
-/// Contacts evenly around a circle.
+/// Contacts spaced evenly on a circle.
 fn ring(count: usize) -> Vec<Contact> {
     (0..count)
         .map(|i| {
@@ -107,7 +107,7 @@ fn ring(count: usize) -> Vec<Contact> {
         .collect()
 }
 
-/// Families that random grasps never meet: symmetric, coplanar and axis-aligned ones.
+/// Families that random sampling does not produce: symmetric, coplanar and axis-aligned grasps.
 fn families() -> Vec<(&'static str, Vec<Vec<Contact>>)> {
     let mut rng = ChaCha8Rng::seed_from_u64(2);
     let on_box = |rng: &mut ChaCha8Rng| {

@@ -1,5 +1,5 @@
-//! The layer `hand`: preparing an object, closing the SDH from 100 poses (on the tips, and past
-//! them), and finding a hand at given contacts.
+//! The crate `hand`: preparing an object, closing the SDH from 100 poses (on the tips, and past
+//! them), and solving for a hand at given contacts.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use grasp::Convention;
@@ -13,7 +13,7 @@ use rand_chacha::rand_core::SeedableRng;
 use shape::RadialShape;
 use sph::Coefficients;
 
-/// A lump of 4 cm with detail up to degree 50.
+/// A lumpy ball of 4 cm with detail up to degree 50.
 fn object() -> RadialShape {
     let mut beta = Coefficients::constant(50, 0.04);
     for (i, b) in beta.as_mut_slice().iter_mut().enumerate().skip(1) {

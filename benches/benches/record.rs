@@ -1,4 +1,4 @@
-//! Records: a library of twelve shapes, written and read.
+//! Records: writing and reading a library of twelve shapes.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use record::{LibraryEntry, LibraryRecord, ShapeRecord};

@@ -1,4 +1,4 @@
-//! Shapes: certificate, mesh, differential at a point.
+//! Shapes: the certificate, the mesh, and the differential at a point.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use shape::{RadialShape, Surface, algebra};

@@ -1,4 +1,4 @@
-//! The moduli space: one quality, steps of the paper's ascent, a whole ascent of ours.
+//! The moduli space: one quality, steps of the paper's ascent, and a whole ascent of ours.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use grasp::Convention;

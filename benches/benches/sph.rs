@@ -1,4 +1,4 @@
-//! Functions on the sphere: fits, certified ranges, and evaluation in an ascent, at L = 50.
+//! Functions on the sphere: fits, certified ranges, and evaluation as in an ascent, at L = 50.
 
 use std::hint::black_box;
 
@@ -11,7 +11,7 @@ use sph::{Basis, Coefficients, Direction, Field, batch, bounds, index};
 
 const DEGREE: usize = 50;
 
-/// A surface like an object's: β ~ 1/l², metres.
+/// A surface with the decay of a real object's: β ~ 1/l², metres.
 fn surface() -> Coefficients {
     let mut beta = Coefficients::constant(DEGREE, 0.05);
     for (i, b) in beta.as_mut_slice().iter_mut().enumerate().skip(1) {
@@ -21,7 +21,7 @@ fn surface() -> Coefficients {
     beta
 }
 
-/// 25,000 noisy samples, twice as dense at the waist as an even cloud.
+/// 25,000 noisy samples, twice as dense at the equator as a uniform cloud.
 fn samples() -> (Vec<Direction>, Vec<f64>) {
     let directions: Vec<Direction> = even_directions(25_000)
         .iter()
@@ -83,7 +83,7 @@ fn reading(c: &mut Criterion) {
     c.bench_function("field set-up", |b| b.iter(|| Field::new(black_box(&beta))));
 }
 
-/// Three contacts a step, each a little beyond where it was.
+/// Three contacts per step, each displaced slightly from step to step.
 fn ascent<T>(
     c: &mut Criterion,
     name: &str,

@@ -1,1 +1,1 @@
-//! Benchmarks of every layer, and side-by-side runs against peers.
+//! Benchmarks of every crate, and comparisons with other libraries.

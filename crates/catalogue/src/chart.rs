@@ -1,11 +1,12 @@
-//! A solid's surface seen from an inner point: its centre, area and area-uniform random points.
+//! A solid's surface seen from an interior point: its centre, area and area-uniform random points.
 
 use crate::solid::{Hit, Solid};
 use nalgebra::{Point3, Vector3};
 use rand::{Rng, RngExt};
 
-/// Squares along one side of a cube face: a coarse chart finds the centre, a fine one samples.
+/// Squares along one side of a cube face in the coarse chart, which is used to find the centre.
 const COARSE: usize = 12;
+/// Squares along one side of a cube face in the fine chart, from which points are sampled.
 const FINE: usize = 40;
 
 /// Triangles that approximate the surface closely enough to propose random points on it.
@@ -30,7 +31,7 @@ struct Triangle {
     corners: [Vector3<f64>; 3],
     /// Twice the area times the unit normal.
     normal: Vector3<f64>,
-    /// Highest ratio of true area to triangle area that the sampling allows for.
+    /// Upper bound of the ratio of true area to triangle area that the sampling assumes.
     bound: f64,
 }
 
@@ -39,7 +40,7 @@ impl Triangle {
         0.5 * self.normal.norm()
     }
 
-    /// Height of the triangle's plane over the viewpoint times twice the area.
+    /// Distance of the triangle's plane from the viewpoint times twice the area.
     fn reach(&self) -> f64 {
         self.normal.dot(&self.corners[0])
     }
@@ -56,7 +57,7 @@ impl Triangle {
 }
 
 impl Chart {
-    /// Charts the surface of a solid around the given inner point.
+    /// Charts the surface of a solid around an interior point.
     ///
     /// Costs about 10,000 ray casts.
     pub(crate) fn new(solid: &Solid, inside: Point3<f64>) -> Self {
@@ -112,9 +113,9 @@ impl Chart {
 
     /// One random point of the true surface, uniform by area, and the outward unit normal there.
     ///
-    /// A point of a random triangle is proposed, carried along its ray to the surface, and accepted
-    /// in proportion to the ratio of the area elements, which makes the density exact wherever that
-    /// ratio stays under the triangle's bound.
+    /// A point of a random triangle is proposed, projected along its ray onto the surface, and
+    /// accepted in proportion to the ratio of the area elements. The density is exact wherever that
+    /// ratio is below the triangle's bound.
     pub(crate) fn sample(&self, solid: &Solid, rng: &mut impl Rng) -> Hit {
         loop {
             let (q, triangle) = self.propose(rng);
@@ -152,14 +153,15 @@ fn span(hits: &[Hit; 3], viewpoint: &Point3<f64>) -> (Triangle, [f64; 3]) {
     };
     let stretch = [0, 1, 2].map(|i| triangle.stretch(&corners[i], &hits[i]));
     let bend = stretch.iter().fold(1.0f64, |m, s| m.max(*s).max(1.0 / s));
-    // Between the corners the ratio can exceed its corner values where an edge crosses.
+    // Between the corners the ratio can exceed its corner values if an edge of the solid crosses
+    // the triangle.
     triangle.bound = 1.1 * bend * bend;
     (triangle, stretch)
 }
 
 /// Grid point (i, j) of a face of the cube [−1, 1]³; faces are numbered +x −x +y −y +z −z.
 ///
-/// The grid is even in angle, and every face is seen anticlockwise from outside.
+/// The grid is uniform in angle, and every face is anticlockwise seen from outside.
 fn cube_point(face: usize, i: usize, j: usize, squares: usize) -> Vector3<f64> {
     let spread = |k: usize| {
         let angle = std::f64::consts::FRAC_PI_2 * (k as f64 / squares as f64 - 0.5);

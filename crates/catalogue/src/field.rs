@@ -1,18 +1,18 @@
-//! Values of an implicit function with their gradients, and how two of them blend.
+//! Values of an implicit function with their gradients, and blends of two of them.
 
 use nalgebra::Vector3;
 
 /// Value and gradient of an implicit function at one point: negative inside, zero on the surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Field {
-    /// Roughly the signed distance to the surface, metres.
+    /// Approximately the signed distance to the surface, metres.
     pub(crate) value: f64,
     /// Gradient of the value; on the surface it points outwards.
     pub(crate) gradient: Vector3<f64>,
 }
 
 impl Field {
-    /// The complement: inside becomes outside.
+    /// The complement: exchanges inside and outside.
     pub(crate) fn complement(self) -> Self {
         Self {
             value: -self.value,

@@ -1,8 +1,8 @@
-//! The built-in objects: twelve of a library, two that no library holds, and spheres.
+//! The built-in objects: twelve library objects, two unseen objects, and spheres.
 //!
-//! The laser scans and meshes behind Sec. IV-A of the paper are not published, so the objects here
-//! are modelled anew as analytic solids: their true radial functions and normals are known, and
-//! scans of any density and noise can be drawn from them.
+//! The laser scans and meshes of Sec. IV-A of the paper are not published. The objects here are
+//! modelled as analytic solids, whose true radial functions and normals are known; scans of any
+//! density and noise can be drawn from them.
 //!
 //! ```
 //! let shampoo = catalogue::by_id("S5").expect("S5 is in the library");
@@ -39,7 +39,7 @@ pub fn library_objects() -> &'static [CatalogueObject] {
     &LIBRARY
 }
 
-/// The two objects U1 and U2 that stand for things never seen before.
+/// The two objects U1 and U2, which are not in the library and represent unknown objects.
 pub fn unseen_objects() -> &'static [CatalogueObject] {
     &UNSEEN
 }

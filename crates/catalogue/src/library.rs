@@ -1,8 +1,8 @@
-//! The twelve objects S1 to S12 that grasps are learnt on.
+//! The twelve objects S1 to S12 of the library.
 //!
-//! Sizes follow the kinds of things found in kitchens and bathrooms. The bottles S5 and S7, the
-//! can S2, the egg S8 and the orange S11 are proportioned so that S7 and S8 lie near the straight
-//! way from S5 to others in the space of radial functions, as in Fig. 4 of the paper.
+//! Their sizes are those of common objects in kitchens and bathrooms. The proportions of the
+//! bottles S5 and S7, the can S2, the egg S8 and the orange S11 are such that S7 and S8 lie near
+//! the straight line from S5 to others in the space of radial functions, as in Fig. 4 of the paper.
 
 use crate::object::CatalogueObject;
 use crate::solid::Solid;
@@ -25,7 +25,7 @@ pub(crate) fn build() -> Vec<CatalogueObject> {
     ]
 }
 
-/// A square body under a gable roof, closed by a tapered seam along the ridge.
+/// A square body with a gable roof and a tapered seam along the ridge.
 fn milk_carton() -> CatalogueObject {
     let body = Solid::standing_box(0.070, 0.070, 0.138, 0.004)
         .within(
@@ -57,7 +57,7 @@ fn soup_can() -> CatalogueObject {
     CatalogueObject::new(label, 2, 0.101, can)
 }
 
-/// A broad foot that sweeps up into a slender neck in a concave curve.
+/// A broad foot with a concave transition to a slender neck.
 fn bell_flask() -> CatalogueObject {
     let foot = Solid::frustum((0.046, 0.0), (0.044, 0.030), 0.010);
     let sweep = Solid::frustum((0.045, 0.010), (0.008, 0.114), 0.004);
@@ -83,7 +83,7 @@ fn pear() -> CatalogueObject {
     CatalogueObject::new(label, 4, 0.096, fruit)
 }
 
-/// An oval body with rounded shoulders under a round cap; S5 and S7 share this form.
+/// An oval body with rounded shoulders and a round cap; S5 and S7 have this form.
 fn oval_bottle(body: (f64, f64), flatness: f64, cap: (f64, f64)) -> Solid {
     let ((radius, shoulder), (cap_radius, top)) = (body, cap);
     let oval = Solid::frustum((0.97 * radius, 0.0), (radius, shoulder), 0.010)
@@ -144,8 +144,8 @@ fn lotion_bottle() -> CatalogueObject {
     CatalogueObject::new(label, 7, 0.145, bottle)
 }
 
-/// A blunt and a pointed ellipsoid flow into each other; two halves of different height would meet
-/// in a jump of the curvature.
+/// A blunt and a pointed ellipsoid with a smooth blend; two half-ellipsoids of different height
+/// would have a discontinuous curvature where they meet.
 fn chocolate_egg() -> CatalogueObject {
     let blunt = Solid::ellipsoid(0.037, 0.037, 0.044).at(0.0, 0.0, 0.040);
     let pointed = Solid::ellipsoid(0.026, 0.026, 0.036).at(0.0, 0.0, 0.079);

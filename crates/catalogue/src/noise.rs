@@ -4,32 +4,32 @@ use nalgebra::{Point3, Vector3};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-/// Gaussian noise along the surface normal, growing where the scanner looks at a grazing angle.
+/// Gaussian noise along the surface normal, larger at grazing incidence.
 ///
-/// The scanner is one that looks at a turntable from a fixed elevation, with a second pass of the
-/// object turned upside down: a point with outward unit normal n is seen best when its side of the
-/// turntable faces the scanner, at an incidence angle a with
-/// cos a = |n_xy| cos e + |n_z| sin e. Its noise has the standard deviation
-/// σ(n) = sigma (1 + grazing (1 − cos a)).
+/// The scanner looks at a turntable from a fixed elevation, and scans the object a second time
+/// upside down. A point with outward unit normal n is seen best when its side of the turntable
+/// faces the scanner, at an incidence angle a with cos a = |n_xy| cos e + |n_z| sin e. Its noise
+/// has the standard deviation σ(n) = sigma (1 + grazing (1 − cos a)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScanNoise {
     /// Standard deviation at normal incidence, metres.
     pub sigma: f64,
-    /// Relative growth from normal incidence (0) to a fully grazing view.
+    /// Relative increase from normal incidence to fully grazing incidence.
     pub grazing: f64,
     /// Elevation e of the scanner above the turntable, radians.
     pub elevation: f64,
 }
 
 impl ScanNoise {
-    /// No noise: every point lies on the true surface.
+    /// No noise: every point is on the true surface.
     pub const NONE: Self = Self {
         sigma: 0.0,
         grazing: 0.0,
         elevation: 0.0,
     };
 
-    /// A laser scanner of the household class: 0.35 mm face on, up to 0.52 mm at grazing angles.
+    /// A laser scanner for household objects: 0.35 mm at normal incidence, up to 0.52 mm at grazing
+    /// angles.
     pub const LASER_SCANNER: Self = Self {
         sigma: 0.35e-3,
         grazing: 1.0,
@@ -43,7 +43,7 @@ impl ScanNoise {
         self.sigma * (1.0 + self.grazing * (1.0 - incidence))
     }
 
-    /// The surface point as the scanner reports it.
+    /// The surface point with noise along its normal.
     pub(crate) fn disturb(
         &self,
         point: Point3<f64>,

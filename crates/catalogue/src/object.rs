@@ -1,4 +1,4 @@
-//! One object of the catalogue: its true surface, and scans of it.
+//! One object of the catalogue: its true surface and its scans.
 
 use crate::chart::Chart;
 use crate::noise::ScanNoise;
@@ -8,20 +8,20 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::sync::OnceLock;
 
-/// Points in a default scan, as in Sec. IV-A of the paper.
+/// Number of points of a default scan, as in Sec. IV-A of the paper.
 pub const SCAN_POINTS: usize = 25_000;
 
 /// A household object given by an analytic solid.
 ///
-/// It stands on the plane z = 0 with its upright axis along z, in metres; that object frame is not
-/// centred. Seen from [`CatalogueObject::centre`] its surface is star-shaped.
+/// It stands on the plane z = 0 with its upright axis along z, in metres; this object frame is not
+/// centred. Its surface is star-shaped about [`CatalogueObject::centre`].
 #[derive(Debug)]
 pub struct CatalogueObject {
-    /// Short name in tables: "S1" to "S12" for the library, "U1" and "U2" for the unseen ones.
+    /// Short name in tables: "S1" to "S12" for the library, "U1" and "U2" for the unseen objects.
     pub id: &'static str,
-    /// What it is, such as "shampoo bottle".
+    /// Common name, such as "shampoo bottle".
     pub name: &'static str,
-    /// One line about its form and size.
+    /// One line on its form and size.
     pub description: &'static str,
     /// Extent along the upright z axis, metres.
     pub height: f64,
@@ -41,11 +41,12 @@ pub struct SurfacePoint {
     pub radius: f64,
 }
 
-/// What a new object is called: id, name, description.
+/// Id, name and description of a new object.
 pub(crate) type Label = [&'static str; 3];
 
 impl CatalogueObject {
-    /// An object of the given height; `stream` tells its random numbers from those of the others.
+    /// An object of the given height; `stream` is its stream of random numbers, distinct for every
+    /// object.
     pub(crate) fn new(label: Label, stream: u64, height: f64, solid: Solid) -> Self {
         let [id, name, description] = label;
         Self {
@@ -59,7 +60,7 @@ impl CatalogueObject {
         }
     }
 
-    /// The chart, made at the first use and kept.
+    /// The chart, computed at the first use and cached.
     pub(crate) fn chart(&self) -> &Chart {
         let middle = Point3::new(0.0, 0.0, 0.45 * self.height);
         self.chart.get_or_init(|| Chart::new(&self.solid, middle))
@@ -70,13 +71,13 @@ impl CatalogueObject {
         &self.solid
     }
 
-    /// Mean of the true surface over its area, object frame, metres: what the mean of an
-    /// area-uniform cloud tends to. From a quadrature, good to about 0.1 mm.
+    /// Mean of the true surface over its area, object frame, metres: the limit of the mean of an
+    /// area-uniform cloud. From a quadrature, accurate to about 0.1 mm.
     pub fn centre(&self) -> Point3<f64> {
         self.chart().centre
     }
 
-    /// Area of the true surface, m², from a quadrature, good to about 0.3 %.
+    /// Area of the true surface, m², from a quadrature, accurate to about 0.3 %.
     pub fn area(&self) -> f64 {
         self.chart().area
     }
@@ -100,22 +101,22 @@ impl CatalogueObject {
 
     /// The implicit function at a point of the object frame: negative inside, zero on the surface.
     ///
-    /// It grows at most about as fast as the distance from the surface, but is not that distance.
+    /// It increases at most about as fast as the distance from the surface, but does not equal it.
     pub fn implicit(&self, point: &Point3<f64>) -> f64 {
         self.solid.field(point).value
     }
 
-    /// Distance of a point near the surface (within a few millimetres) from it, signed, positive
-    /// outside, metres: the implicit function over the length of its gradient, F/|∇F|, which is
-    /// right to first order.
+    /// Signed distance of a point near the surface (within a few millimetres), positive outside,
+    /// metres. It is F/|∇F| for the implicit function F, accurate to first order.
     pub fn signed_distance(&self, point: &Point3<f64>) -> f64 {
         let field = self.solid.field(point);
         field.value / field.gradient.norm()
     }
 
-    /// Random points of the surface, uniform by area, disturbed along the normal like a scan.
+    /// Random points of the surface, uniform by area, with the noise of a scan along the normal.
     ///
-    /// Object frame, metres; in random order. About 1 µs a point, 3 µs for the objects of many pieces.
+    /// Object frame, metres, in random order. About 1 µs per point; 3 µs for objects of many
+    /// pieces.
     pub fn sample(&self, points: usize, noise: &ScanNoise, rng: &mut impl Rng) -> Vec<Point3<f64>> {
         let chart = self.chart();
         (0..points)
@@ -128,7 +129,7 @@ impl CatalogueObject {
 
     /// The default scan: [`SCAN_POINTS`] points with the default noise.
     ///
-    /// The same seed gives the same bytes, and no two objects share random numbers.
+    /// The same seed gives the same bytes; objects do not share random numbers.
     pub fn scan(&self, seed: u64) -> Vec<Point3<f64>> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(self.stream);

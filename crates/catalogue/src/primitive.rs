@@ -1,12 +1,12 @@
-//! The pieces that solids are put together from, each with its implicit function and gradient.
+//! The primitives of solids, each with its implicit function and gradient.
 
 use crate::field::Field;
 use nalgebra::{Point3, Vector2, Vector3};
 
-/// Below this length (metres) a direction is taken as undefined and its gradient as zero.
+/// Length below which a direction is undefined and its gradient zero, metres.
 const TINY: f64 = 1e-12;
 
-/// x / |x|, or zero where x vanishes (only ever on an axis or centre, never on a surface).
+/// x / |x|, or zero where x vanishes (only on an axis or at a centre, never on a surface).
 fn direction(x: Vector3<f64>) -> Vector3<f64> {
     let norm = x.norm();
     if norm > TINY {
@@ -18,7 +18,7 @@ fn direction(x: Vector3<f64>) -> Vector3<f64> {
 
 /// Ellipsoid about the origin: s (|p / a| − 1) with s the smallest semi-axis.
 ///
-/// The factor keeps the slope at most one, as of a distance.
+/// The factor s bounds the slope by one, like that of a distance.
 pub(crate) fn ellipsoid(p: &Point3<f64>, semi_axes: &Vector3<f64>) -> Field {
     let scaled = p.coords.component_div(semi_axes);
     let shortest = semi_axes.min();
@@ -57,7 +57,7 @@ pub(crate) fn half_space(p: &Point3<f64>, normal: &Vector3<f64>, offset: f64) ->
     }
 }
 
-/// Truncated cone about the z axis with rounded rims, stored as the core that is grown by `round`.
+/// Truncated cone about the z axis with rounded rims, stored as a core that is offset by `round`.
 #[derive(Clone, Debug)]
 pub(crate) struct Frustum {
     bottom: Vector2<f64>,
@@ -175,7 +175,7 @@ mod tests {
         let at = |r: f64, z: f64| frustum.field(&Point3::new(0.0, r, z)).value;
         assert!(at(0.0, 0.01).abs() <= 1e-15);
         assert!(at(0.0, 0.06).abs() <= 1e-15);
-        // Halfway up, the slanted side is where the sharp cone has it.
+        // At half the height the slanted side coincides with that of the sharp cone.
         assert!(at(0.025, 0.035).abs() <= 1e-15);
         assert!(at(0.0, 0.035) < -0.02);
     }

@@ -1,10 +1,10 @@
-//! Solids as trees of smooth pieces, and where a ray from inside leaves them.
+//! Solids as trees of smooth primitives, and the exit points of rays from inside.
 
 use crate::field::Field;
 use crate::primitive::{Frustum, ellipsoid, half_space, round_box, seamed_ball};
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
-/// Rays are followed this far, metres; no object of the catalogue is larger.
+/// Largest length of a ray, metres; every object of the catalogue is smaller.
 const REACH: f64 = 0.4;
 
 /// A solid given by an implicit function; metres, z upright.
@@ -71,7 +71,7 @@ impl Solid {
         Self::Frustum(Frustum::new(bottom, top, round))
     }
 
-    /// All points below the plane through `point` with the given upward or outward normal.
+    /// All points below the plane through `point`, whose normal points up or outwards.
     pub(crate) fn below(point: [f64; 3], normal: [f64; 3]) -> Self {
         let normal = Vector3::from(normal).normalize();
         let offset = normal.dot(&Vector3::from(point));
@@ -84,7 +84,7 @@ impl Solid {
         Self::Moved { solid, by }
     }
 
-    /// Turned about the origin by roll, pitch, yaw in radians (applied in this order).
+    /// The solid rotated about the origin by roll, pitch and yaw in radians, applied in this order.
     pub(crate) fn turned(self, roll: f64, pitch: f64, yaw: f64) -> Self {
         let by = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
         let solid = Box::new(self);
@@ -112,7 +112,7 @@ impl Solid {
         Self::Difference { parts, fillet }
     }
 
-    /// Cut off flat at z = 0, so that it stands, with a rounded rim.
+    /// The solid cut off at z = 0 with a rounded rim, so that it can stand.
     pub(crate) fn standing(self, fillet: f64) -> Self {
         let table = Self::below([0.0; 3], [0.0, 0.0, -1.0]);
         self.within(table, fillet)
@@ -156,10 +156,10 @@ impl Solid {
         }
     }
 
-    /// Where the ray from the inner point `from` along the unit vector `direction` leaves the solid.
+    /// The exit point of the ray from the inner point `from` along the unit vector `direction`.
     ///
-    /// Newton steps kept inside a shrinking bracket, started at the distance `guess`; the result
-    /// lies on the surface to about 1e-13 m.
+    /// Newton's method safeguarded by a shrinking bracket, started at the distance `guess`. The
+    /// result is on the surface to about 1e-13 m.
     pub(crate) fn leave(&self, from: &Point3<f64>, direction: &Vector3<f64>, guess: f64) -> Hit {
         let (mut inner, mut outer) = (0.0, REACH);
         let mut distance = guess.clamp(0.0, REACH);
@@ -175,7 +175,7 @@ impl Solid {
                 outer = distance;
             }
             let newton = distance - field.value / field.gradient.dot(direction);
-            // A NaN or infinite step fails this comparison and falls back to halving.
+            // A NaN or infinite step fails this comparison and is replaced by bisection.
             distance = if newton > inner && newton < outer {
                 newton
             } else {
@@ -191,7 +191,7 @@ impl Solid {
     }
 }
 
-/// Where a ray leaves a solid.
+/// The exit point of a ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hit {
     /// Length of the ray, metres.

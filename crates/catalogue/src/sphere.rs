@@ -5,9 +5,10 @@ use nalgebra::{Point3, Vector3};
 use rand::{Rng, RngExt};
 use rand_distr::UnitSphere;
 
-/// `count` radii in equal steps from `smallest` to `largest`, both included; one radius is `smallest`.
+/// `count` radii in equal steps from `smallest` to `largest`, both included; a single radius is
+/// `smallest`.
 ///
-/// The paper takes 30 from 0.03 m to 0.06 m.
+/// The paper uses 30 from 0.03 m to 0.06 m.
 pub fn sphere_radii(count: usize, smallest: f64, largest: f64) -> Vec<f64> {
     let steps = count.saturating_sub(1).max(1) as f64;
     (0..count)
@@ -60,7 +61,8 @@ mod tests {
         let rms = (squares / cloud.len() as f64).sqrt();
         assert!((0.34e-3..=0.45e-3).contains(&rms), "rms {rms}");
         let mean = cloud.iter().map(|p| p - centre).sum::<Vector3<f64>>() / cloud.len() as f64;
-        // Five standard errors of a mean of 20,000 points with deviation radius/√3 an axis.
+        // Five standard errors of a mean of 20,000 points with standard deviation radius/√3 per
+        // axis.
         assert!(mean.amax() <= 5.0 * 0.045 / (3.0f64 * 20_000.0).sqrt());
     }
 }

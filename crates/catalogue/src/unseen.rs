@@ -1,4 +1,4 @@
-//! Two objects that stand for things never seen before: no library holds them.
+//! Two objects that are not in the library and represent unknown objects.
 
 use crate::object::CatalogueObject;
 use crate::solid::Solid;
@@ -8,7 +8,7 @@ pub(crate) fn build() -> Vec<CatalogueObject> {
     vec![honey_bear(), detergent_bottle()]
 }
 
-/// A sitting bear of squeezable plastic: belly, paws, head with snout and ears, pointed cap.
+/// A sitting bear as a squeeze bottle: belly, paws, head with snout and ears, pointed cap.
 fn honey_bear() -> CatalogueObject {
     let belly = Solid::ellipsoid(0.038, 0.036, 0.048).at(0.0, 0.0, 0.043);
     let head = Solid::ball(0.029).at(0.0, 0.0, 0.097);

@@ -24,8 +24,8 @@ thread_local! {
 /// ```
 pub struct CountingAllocator;
 
-/// Allocations and reallocations of this thread so far; 0 unless [`CountingAllocator`] is the global
-/// allocator of the program.
+/// Number of allocations and reallocations of this thread so far; 0 unless [`CountingAllocator`] is
+/// the global allocator of the program.
 pub fn allocations() -> usize {
     COUNT.with(Cell::get)
 }
@@ -34,7 +34,7 @@ fn count_one() {
     COUNT.with(|count| count.set(count.get() + 1));
 }
 
-// SAFETY: every call goes on to the system's allocator unchanged.
+// SAFETY: every call is passed to the system's allocator unchanged.
 unsafe impl GlobalAlloc for CountingAllocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count_one();

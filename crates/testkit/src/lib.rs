@@ -1,15 +1,15 @@
 //! Helpers that the tests of several crates share.
 //!
-//! - [`scans`] is the folder of real scans. A test that needs it is marked
-//!   `#[ignore = "needs the scans of MODULI_DATA"]`: without the folder it is listed as ignored, with
-//!   the reason, and counted in the last line of its test program; it never passes empty. To run
-//!   all tests:
+//! - [`scans`] is the folder of real scans. A test that needs it is marked `#[ignore = "needs the
+//!   scans of MODULI_DATA"]`. Without the folder such a test is listed as ignored, with the reason,
+//!   and counted in the last line of its test program; it never passes without its data. To run all
+//!   tests:
 //!
 //!   ```sh
 //!   MODULI_DATA=FOLDER cargo test --workspace -- --include-ignored
 //!   ```
 //!
-//! - [`mod@reference`] holds numbers of independent programs, which tests compare with.
+//! - [`mod@reference`] holds results of independent programs, which tests compare with.
 //! - [`CountingAllocator`] counts the allocations of each thread.
 //!
 //! ```
@@ -27,14 +27,14 @@ pub use allocation::{CountingAllocator, allocations};
 
 use std::path::PathBuf;
 
-/// The variable that names the folder of real scans and hands.
+/// The environment variable that names the folder of real scans and hands.
 const VARIABLE: &str = "MODULI_DATA";
 
 /// The folder of real scans (`objects`) and hands (`hands`).
 ///
 /// # Panics
-/// The environment variable `MODULI_DATA` is not set, or is not a folder. The test that asks is then
-/// run without its data, which must not pass.
+/// The environment variable `MODULI_DATA` is not set, or is not a folder. A test that was started
+/// without its data must fail.
 pub fn scans() -> PathBuf {
     let Some(folder) = std::env::var_os(VARIABLE).map(PathBuf::from) else {
         panic!(

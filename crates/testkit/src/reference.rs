@@ -1,4 +1,4 @@
-//! Numbers of independent programs, with the scripts that made them in `reference/`.
+//! Results of independent programs; the scripts that computed them are in `reference/`.
 
 /// Grasp quality of 409 grasps from Qhull, as CSV.
 ///

@@ -1,4 +1,4 @@
-//! What the solids are like: star-shaped, of a size to be held, round or non-convex where claimed.
+//! Properties of the solids: star-shaped, of graspable size, round or non-convex where claimed.
 
 use crate::common::all_objects;
 use catalogue::{CatalogueObject, SCAN_POINTS, ScanNoise, by_id};
@@ -77,7 +77,7 @@ fn sizes_suit_the_hand_and_objects_stand_on_the_table() {
     }
 }
 
-/// How far the midpoint of two surface points gets out of the solid at most, metres.
+/// Largest distance from the solid of the midpoint of two surface points, metres.
 fn hollow(object: &CatalogueObject) -> f64 {
     let cloud = clean_sample(object, 500);
     let mut deepest = f64::NEG_INFINITY;

@@ -1,4 +1,4 @@
-//! The tests of `catalogue` that use it from outside, as one program.
+//! The integration tests of `catalogue`, as one program.
 
 mod common;
 mod geometry;

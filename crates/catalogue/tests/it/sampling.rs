@@ -1,4 +1,4 @@
-//! Scans: reproducible, uniform by area, with the noise that was asked for.
+//! Scans: reproducible, uniform by area, with the requested noise.
 
 use crate::common::all_objects;
 use catalogue::{CatalogueObject, SCAN_POINTS, ScanNoise, by_id};
@@ -42,8 +42,8 @@ fn a_scan_does_not_depend_on_the_thread_that_asks_first() {
 const ROWS: usize = 8;
 const COLUMNS: usize = 8;
 
-/// Area of each bin of directions, even in polar angle and azimuth, by the midpoint rule for
-/// dA = r²/(n·p) sin θ dθ dφ, which is independent of how the sampler works.
+/// Area of each bin of directions (uniform in polar angle and azimuth) by the midpoint rule for dA
+/// = r²/(n·p) sin θ dθ dφ, which does not use the sampler.
 fn bin_areas(object: &CatalogueObject) -> Vec<f64> {
     let (rows, columns) = (ROWS * 80, COLUMNS * 20);
     let (d_theta, d_phi) = (PI / rows as f64, TAU / columns as f64);
@@ -91,7 +91,8 @@ fn points_are_uniform_by_area() {
                 (count - expected) * (count - expected) / expected
             })
             .sum();
-        // 63 degrees of freedom: mean 63, deviation 11.2; the bound is five deviations above.
+        // 63 degrees of freedom: mean 63, standard deviation 11.2; the bound is five deviations
+        // above the mean.
         assert!(chi_square <= 120.0, "{}: {chi_square}", object.id);
     }
 }
@@ -113,7 +114,7 @@ fn the_can_has_its_analytic_share_on_the_side() {
         .filter(|p| p.z > round && p.z < height - round)
         .count();
     let error = (on_side as f64 / count as f64 - share).abs();
-    // Five standard errors of the binomial share.
+    // Five standard errors of a binomial proportion.
     assert!(
         error <= 5.0 * (share * (1.0 - share) / count as f64).sqrt(),
         "{error}"

@@ -1,4 +1,4 @@
-//! Fig. 4 of the paper: on its straight ways to others, S5 passes the neighbourhood of S7 and S8.
+//! Fig. 4 of the paper: the straight lines from S5 to other shapes pass near S7 and S8.
 
 use catalogue::{by_id, library_objects};
 use nalgebra::{Unit, Vector3};
@@ -33,7 +33,8 @@ fn minus(f: &[f64], g: &[f64]) -> Vec<f64> {
     f.iter().zip(g).map(|(x, y)| x - y).collect()
 }
 
-/// Distance of f from the straight segment between a and b, and where its foot lies (0 at a).
+/// Distance of f from the straight segment between a and b, and the parameter of the nearest point
+/// (0 at a).
 fn distance_from_segment(f: &[f64], a: &[f64], b: &[f64]) -> (f64, f64) {
     let (along, from_a) = (minus(b, a), minus(f, a));
     let dot: f64 = along.iter().zip(&from_a).map(|(x, y)| x * y).sum();

@@ -1,4 +1,4 @@
-//! No circle of modules but parent and child.
+//! No cycle of modules except between parent and child.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! Which crate uses which, and what every crate must have.
+//! Dependencies between crates, and what every crate must have.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::sources::{crate_folders, root, rust_files, sources};
 
-/// Every crate of the workspace, and the crates of the workspace that it may use.
+/// Every crate of the workspace, and the workspace crates that it may use.
 const ARROWS: &[(&str, &[&str])] = &[
     ("sph", &[]),
     ("fixtures", &[]),
@@ -71,7 +71,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Foreign crates with one door: the crate and the module that may name them.
+/// Foreign crates that only one module may name: the crate, and that module.
 const DOORS: &[(&str, &str, &str)] = &[
     ("faer", "sph", "regression"),
     ("parry3d_f64", "hand", "collision"),
@@ -99,7 +99,7 @@ fn metadata() -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// The name by which ARROWS speaks of a package.
+/// The name of a package in ARROWS.
 fn short(package: &str) -> &str {
     package.strip_prefix("moduli-").unwrap_or(package)
 }

@@ -1,4 +1,4 @@
-//! Paths that a Rust file names: from `use` items and from its code.
+//! The paths that a Rust file names in `use` items and in its code.
 
 /// A path as written, and whether its last name is imported by a `pub use`.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -86,7 +86,7 @@ fn names(path: &str) -> Vec<String> {
         .collect()
 }
 
-/// Parts of a list at its own level of braces.
+/// The top-level parts of a list in braces.
 fn split_top(body: &str) -> Vec<&str> {
     let (mut depth, mut start, mut parts) = (0_i32, 0, Vec::new());
     for (at, c) in body.char_indices() {
@@ -126,7 +126,7 @@ fn paths_in_code(code: &str) -> Vec<Import> {
     found
 }
 
-/// The text with comments cut out and the contents of string literals blanked.
+/// The text without comments and with the contents of string literals blanked.
 fn without_comments(text: &str) -> String {
     text.lines()
         .map(|line| line.split("//").next().unwrap_or(""))

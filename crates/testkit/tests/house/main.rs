@@ -1,8 +1,8 @@
-//! The rules of the house, checked on the sources of the whole workspace.
+//! The rules of the workspace, checked on its sources.
 //!
-//! Which crate may use which, which foreign crate has which door, no circle of modules but parent
-//! and child, short files and functions, and a first page with a program for every crate.
-//! ARCHITECTURE.md states the same rules for people.
+//! They cover which crate may use which, which module may use which foreign crate, cycles of
+//! modules, the lengths of files and functions, and the first page of every crate. ARCHITECTURE.md
+//! states the same rules in prose.
 
 mod circles;
 mod crates;

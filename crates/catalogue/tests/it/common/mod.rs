@@ -1,4 +1,4 @@
-//! What several test files share.
+//! Functions that several test files share.
 
 use catalogue::{CatalogueObject, library_objects, unseen_objects};
 
