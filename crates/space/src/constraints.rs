@@ -56,7 +56,7 @@ pub enum ConstraintError {
     },
     /// No grasp reachable from the start is closed under the second objective.
     #[error(
-        "the start misses closure under the friction margin by {by}, and no closed grasp was found from it"
+        "the start misses closure under the friction margin by {by}, no closed grasp is near"
     )]
     FrictionMargin {
         /// Distance from closure.
