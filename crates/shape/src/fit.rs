@@ -1,5 +1,7 @@
 //! From a cloud to a proved member of M^rad.
 
+use std::borrow::Cow;
+
 use nalgebra::Point3;
 use sph::regression::{Gram, Penalty, RegressionError, Samples};
 use sph::rotation::heat_flow;
@@ -8,7 +10,7 @@ use crate::hole_filling::fill_holes;
 use crate::misfit::Misfit;
 use crate::opening::{OpenContainer, Opening};
 use crate::outliers::{isolated_points, outlying_points};
-use crate::point_cloud::{CloudError, PointCloud};
+use crate::point_cloud::{CloudError, PointCloud, RadialSamples};
 use crate::radial::{RadialError, RadialShape};
 use crate::visibility::{Crossing, Visibility, measure_visibility};
 
@@ -231,7 +233,7 @@ pub fn fit(cloud: &PointCloud, settings: &FitSettings) -> Result<Fit, FitError> 
             if round > 0 || outlying.is_empty() {
                 return Err(error);
             }
-            outliers.extend(outlying.iter().map(|i| view.index[*i]));
+            outliers.extend(outlying.iter().map(|i| view.place(*i)));
             round += 1;
             continue;
         }
@@ -247,7 +249,7 @@ pub fn fit(cloud: &PointCloud, settings: &FitSettings) -> Result<Fit, FitError> 
                 None => Ok(fit),
             };
         }
-        outliers.extend(outlying.iter().map(|i| view.index[*i]));
+        outliers.extend(outlying.iter().map(|i| view.place(*i)));
     }
 }
 
@@ -281,13 +283,14 @@ fn influential(outlying: &[usize], residuals: &[f64]) -> bool {
     theirs > INFLUENTIAL * all
 }
 
-/// The points in use, seen from their mean.
-struct View {
+/// The points in use, seen from their mean. The points of a cloud of which all are in use are not
+/// copied: a cloud may have millions.
+struct View<'a> {
     centre: Point3<f64>,
-    /// Position of each point in the cloud.
-    index: Vec<usize>,
-    points: Vec<Point3<f64>>,
-    samples: crate::point_cloud::RadialSamples,
+    /// Position of each point in the cloud, where not all are in use.
+    index: Option<Vec<usize>>,
+    points: Cow<'a, [Point3<f64>]>,
+    samples: RadialSamples,
 }
 
 /// A regression that led to a shape.
@@ -297,32 +300,48 @@ struct Solved {
     condition: f64,
 }
 
-impl View {
-    fn new(cloud: &PointCloud, outliers: &[usize]) -> Result<Self, FitError> {
+impl<'a> View<'a> {
+    fn new(cloud: &'a PointCloud, outliers: &[usize]) -> Result<Self, FitError> {
+        let at = |i: usize| cloud.points()[i];
         let mut used = vec![true; cloud.points().len()];
         for &i in outliers {
             used[i] = false;
         }
-        let at = |i: usize| cloud.points()[i];
         let all = (0..used.len()).filter(|i| used[*i]);
-        let centre = PointCloud::new(all.clone().map(at).collect())?.mean();
+        let centre = match outliers {
+            [] => cloud.mean(),
+            _ => PointCloud::new(all.clone().map(at).collect())?.mean(),
+        };
+        if outliers.is_empty() && !cloud.points().contains(&centre) {
+            return Ok(Self {
+                centre,
+                index: None,
+                points: Cow::Borrowed(cloud.points()),
+                samples: cloud.seen_from(&centre),
+            });
+        }
         // A point at the centre has no direction.
         let index: Vec<usize> = all.filter(|i| at(*i) != centre).collect();
         let points: Vec<Point3<f64>> = index.iter().map(|i| at(*i)).collect();
         let samples = PointCloud::new(points.clone())?.seen_from(&centre);
         Ok(Self {
             centre,
-            index,
-            points,
+            index: Some(index),
+            points: Cow::Owned(points),
             samples,
         })
     }
 
+    /// Position of a point in the cloud.
+    fn place(&self, point: usize) -> usize {
+        self.index.as_ref().map_or(point, |index| index[point])
+    }
+
     fn solve(&self, settings: &FitSettings, visibility: &Visibility) -> Result<Solved, FitError> {
-        let (directions, values) = fill_holes(&self.samples, &visibility.unobserved_directions);
+        let filled = fill_holes(&self.samples, &visibility.unobserved_directions);
         let samples = Samples {
-            directions: &directions,
-            values: &values,
+            directions: &filled.directions,
+            values: &filled.radii,
         };
         let gram = Gram::new(samples, settings.degree)?;
         let chosen = settings.lambda.is_none();
@@ -331,7 +350,7 @@ impl View {
                 lambda,
                 power: PENALTY_POWER,
             },
-            None => choose_penalty(&gram, values.len(), settings.degree)?,
+            None => choose_penalty(&gram, filled.radii.len(), settings.degree)?,
         };
         let mut raises = if chosen { MAX_RAISES } else { 0 };
         loop {
@@ -370,9 +389,11 @@ impl View {
 
     /// r(pᵢ) − rᵢ.
     fn residuals(&self, shape: &RadialShape) -> Vec<f64> {
-        let fitted = shape.radii(&self.samples.directions);
-        let pairs = fitted.iter().zip(&self.samples.radii);
-        pairs.map(|(fitted, radius)| fitted - radius).collect()
+        let mut residuals = shape.radii(&self.samples.directions);
+        for (fitted, radius) in residuals.iter_mut().zip(&self.samples.radii) {
+            *fitted -= radius;
+        }
+        residuals
     }
 }
 

@@ -1,5 +1,7 @@
 //! What to assume where a cloud has nothing: a membrane over the hole.
 
+use std::borrow::Cow;
+
 use sph::Direction;
 
 use crate::point_cloud::RadialSamples;
@@ -8,26 +10,26 @@ use crate::sphere_partition::SpherePartition;
 /// Sweeps of Gauss and Seidel; holes are a few dozen cells wide at most.
 const SWEEPS: usize = 200;
 
-/// The samples, followed by one for every unobserved direction.
+/// The samples, followed by one for every unobserved direction; borrowed where there is none.
 ///
 /// Smoothness alone lets a surface shoot up over a hole as wide as half the sphere. The value given
 /// to an unobserved direction is the harmonic continuation of what was seen around the hole (a discrete
 /// Laplace equation on cells), so it stays between the least and the largest radius at the rim. It
 /// weighs as much as one point of the cloud.
-pub(crate) fn fill_holes(
-    samples: &RadialSamples,
+pub(crate) fn fill_holes<'a>(
+    samples: &'a RadialSamples,
     unobserved: &[Direction],
-) -> (Vec<Direction>, Vec<f64>) {
-    let mut directions = samples.directions.clone();
-    let mut values = samples.radii.clone();
+) -> Cow<'a, RadialSamples> {
     if unobserved.is_empty() || samples.radii.is_empty() {
-        return (directions, values);
+        return Cow::Borrowed(samples);
     }
     let radii = membrane(samples);
     let cells = SpherePartition::for_views(samples.radii.len());
-    directions.extend_from_slice(unobserved);
-    values.extend(unobserved.iter().map(|p| radii[cells.index(p)]));
-    (directions, values)
+    let mut filled = samples.clone();
+    filled.directions.extend_from_slice(unobserved);
+    let new = unobserved.iter().map(|p| radii[cells.index(p)]);
+    filled.radii.extend(new);
+    Cow::Owned(filled)
 }
 
 /// Mean radius of every seen cell, and the mean of the neighbours for every other.
@@ -72,12 +74,12 @@ mod tests {
             directions,
         };
         let visibility = measure_visibility(&samples);
-        let (directions, values) = fill_holes(&samples, &visibility.unobserved_directions);
+        let filled = fill_holes(&samples, &visibility.unobserved_directions);
         assert_eq!(
-            directions.len(),
+            filled.directions.len(),
             samples.radii.len() + visibility.unobserved_directions.len()
         );
-        let new = &values[samples.radii.len()..];
+        let new = &filled.radii[samples.radii.len()..];
         assert!(new.len() > 5);
         // The rim lies between x = 0.35 and x = 0.6.
         assert!(new.iter().all(|r| (0.055..=0.0625).contains(r)), "{new:?}");
