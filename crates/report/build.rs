@@ -1,4 +1,4 @@
-//! Compresses plotly.js, which the plotly crate carries, for the pages.
+//! Compresses the plotly.js of the plotly crate for embedding in pages.
 
 use std::error::Error;
 use std::io::Write;
@@ -12,8 +12,8 @@ use flate2::write::ZlibEncoder;
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed=build.rs");
     let scripts = plotly::Plot::offline_js_sources();
-    // The crate gives its scripts as HTML elements, plotly.js first; a formula renderer follows, which
-    // no page needs.
+    // The crate returns its scripts as HTML elements: plotly.js first, then a formula renderer,
+    // which no page uses.
     let start = scripts
         .find("/**\n* plotly.js v3")
         .ok_or("no plotly.js in the plotly crate")?;

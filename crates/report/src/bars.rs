@@ -23,7 +23,7 @@ pub struct Bars {
     pub y_label: String,
     /// The categories, left to right.
     pub categories: Vec<String>,
-    /// One bar a category and series.
+    /// The series, each with one bar per category.
     pub series: Vec<BarSeries>,
 }
 
@@ -32,7 +32,7 @@ pub struct Bars {
 pub struct BarSeries {
     /// Name in the legend.
     pub name: String,
-    /// One height a category.
+    /// One height per category.
     pub values: Vec<f64>,
 }
 
@@ -54,7 +54,7 @@ pub struct Histogram {
 pub struct Sample {
     /// Name in the legend.
     pub name: String,
-    /// The values that are counted.
+    /// The values of the sample.
     pub values: Vec<f64>,
 }
 
@@ -116,7 +116,7 @@ impl Histogram {
         Ok(plot)
     }
 
-    /// Bins over the range of all samples; a range of zero width is given some.
+    /// Bins over the range of all samples; a range of zero width is widened.
     fn edges(&self) -> Edges {
         let values = || self.samples.iter().flat_map(|s| &s.values).copied();
         let low = values().fold(f64::INFINITY, f64::min);
@@ -132,7 +132,7 @@ impl Histogram {
         }
     }
 
-    /// How many values fall into each bin; the last bin includes its upper edge.
+    /// Number of values in each bin; the last bin includes its upper edge.
     fn counts(&self, edges: &Edges, values: &[f64]) -> Vec<usize> {
         let mut counts = vec![0; self.bins];
         for value in values {

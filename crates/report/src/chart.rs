@@ -11,7 +11,7 @@ use crate::scene::legend_on_top;
 use crate::text;
 use crate::theme;
 
-/// Digits that a plotted number keeps.
+/// Significant digits of a plotted number.
 pub(crate) const DIGITS: i32 = 7;
 
 /// A 2-D plot of named series.
@@ -25,9 +25,9 @@ pub struct Chart {
     pub y: Axis,
     /// The series, in the order of the legend.
     pub series: Vec<Series>,
-    /// Draws the line y = x for comparing before and after.
+    /// Whether the line y = x is drawn, to compare before and after.
     pub diagonal: bool,
-    /// One unit is as long on x as on y (both axes linear).
+    /// Whether both axes have the same scale (linear axes only).
     pub equal_scale: bool,
 }
 
@@ -43,9 +43,9 @@ pub struct Axis {
 /// Scale of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AxisScale {
-    /// Even steps.
+    /// Linear.
     Linear,
-    /// Even ratios, to base 10; all values must be above zero.
+    /// Logarithmic, to base 10; all values must be positive.
     Log,
 }
 
@@ -58,7 +58,7 @@ impl Axis {
         }
     }
 
-    /// A logarithmic axis (base 10); a page with values at or below zero on it is refused.
+    /// A logarithmic axis (base 10). A page with a value ≤ 0 on it is an error.
     pub fn log(label: impl Into<String>) -> Axis {
         Axis {
             label: label.into(),
@@ -78,7 +78,8 @@ impl Axis {
             .auto_margin(true);
         match self.scale {
             AxisScale::Linear => axis.type_(AxisType::Linear),
-            // Powers of ten and the 2 and 5 between them; all digits would crowd.
+            // Ticks at powers of ten and at 2 and 5 between them; ticks at all digits would
+            // overlap.
             AxisScale::Log => axis.type_(AxisType::Log).n_ticks(8),
         }
     }
@@ -87,13 +88,13 @@ impl Axis {
 /// One named series of a [`Chart`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Name in the legend; no entry if empty.
+    /// Name in the legend; a series with an empty name has no entry.
     pub name: String,
-    /// Points [x, y] in the order in which a line joins them.
+    /// Points [x, y] in the order in which they are joined.
     pub points: Vec<[f64; 2]>,
     /// How the points are drawn.
     pub mark: Mark,
-    /// A text beside each point; empty for none.
+    /// One text per point; empty for none.
     pub labels: Vec<String>,
 }
 
@@ -102,7 +103,7 @@ pub struct Series {
 pub enum Mark {
     /// Points joined by a line.
     Line,
-    /// Points joined by a dashed line, for a reference.
+    /// Points joined by a dashed line, for a reference curve.
     Dashed,
     /// Unconnected markers.
     Points,
@@ -147,7 +148,7 @@ impl Series {
             (Mark::LineAndPoints, false) => Mode::LinesMarkers,
             (Mark::LineAndPoints, true) => Mode::LinesMarkersText,
         };
-        // Dense clouds of markers stay readable when they are small and let others through.
+        // Many markers are drawn small and translucent, so that they stay readable.
         let crowded = self.points.len() > 200;
         let marker = Marker::new()
             .color(colour)

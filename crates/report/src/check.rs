@@ -1,8 +1,8 @@
-//! Checks of the input, each returning an error that names place, index and value.
+//! Checks of the input. Each error names the place, the index and the value.
 
 use crate::error::ReportError;
 
-/// Refuses NaN and infinities among `values`.
+/// An error for a NaN or infinite entry of `values`.
 pub(crate) fn finite(place: &str, values: &[f64]) -> Result<(), ReportError> {
     match values.iter().position(|v| !v.is_finite()) {
         None => Ok(()),
@@ -14,7 +14,7 @@ pub(crate) fn finite(place: &str, values: &[f64]) -> Result<(), ReportError> {
     }
 }
 
-/// Refuses NaN and infinities among the coordinates of `points`; the index is the point's.
+/// An error for a NaN or infinite coordinate of `points`; the index is that of the point.
 pub(crate) fn finite_points<const N: usize>(
     place: &str,
     points: &[[f64; N]],
@@ -31,7 +31,7 @@ pub(crate) fn finite_points<const N: usize>(
     Ok(())
 }
 
-/// Refuses values at or below zero, which a logarithmic axis cannot show.
+/// An error for a value ≤ 0, which a logarithmic axis cannot show.
 pub(crate) fn positive(
     place: &str,
     values: impl IntoIterator<Item = f64>,
@@ -46,7 +46,7 @@ pub(crate) fn positive(
     }
 }
 
-/// Refuses a list of `found` entries where `expected` belong.
+/// An error if a list has `found` entries and not `expected`.
 pub(crate) fn same_length(place: &str, expected: usize, found: usize) -> Result<(), ReportError> {
     if expected == found {
         return Ok(());
@@ -58,7 +58,7 @@ pub(crate) fn same_length(place: &str, expected: usize, found: usize) -> Result<
     })
 }
 
-/// Refuses labels that are neither absent nor one a point.
+/// An error unless there are no labels or one per point.
 pub(crate) fn labels(place: &str, points: usize, labels: &[String]) -> Result<(), ReportError> {
     if labels.is_empty() {
         return Ok(());
@@ -66,7 +66,7 @@ pub(crate) fn labels(place: &str, points: usize, labels: &[String]) -> Result<()
     same_length(place, points, labels.len())
 }
 
-/// Refuses an empty part.
+/// An error for an empty part.
 pub(crate) fn not_empty(place: &str, length: usize) -> Result<(), ReportError> {
     if length > 0 {
         return Ok(());

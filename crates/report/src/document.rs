@@ -1,28 +1,29 @@
-//! The frame of every page: head, policy, style, data, plotly.js, script.
+//! The frame of every page: head, content policy, style, data, plotly.js, script.
 
 use crate::packed;
 use crate::text;
 
 const STYLE: &str = include_str!("assets/page.css");
-/// Unpacks plotly.js and the data; dark or light; a sentence where the browser cannot.
+/// The script that unpacks plotly.js and the data, sets the dark or light theme, and shows a
+/// message if the browser lacks a feature.
 const START: &str = include_str!("assets/start.js");
 
-/// Nothing may be fetched from anywhere: a browser that honours this cannot even try.
-/// Inline code is all there is; `unsafe-eval` since plotly.js compiles some of its own.
+/// The content policy: the page may not fetch anything. All code is inline; `unsafe-eval` is needed
+/// because plotly.js compiles code.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; \
                       style-src 'unsafe-inline'; img-src data: blob:";
 
 /// Scripts of a page, run in this order after its body.
 pub(crate) struct Scripts<'a> {
-    /// JSON by element id; the script reads it by `data(id)`.
+    /// JSON by element id; scripts read it with `data(id)`.
     pub(crate) data: Vec<(String, String)>,
-    /// Our own script, run once plotly.js and the data are unpacked.
+    /// The page's script, run after plotly.js and the data are unpacked.
     pub(crate) code: &'a str,
 }
 
 /// Assembles a page; `body` is HTML, `title` is plain text.
 ///
-/// plotly.js is embedded once, compressed, and not at all without scripts.
+/// plotly.js is embedded once, compressed; a page without scripts does not have it.
 pub(crate) fn document(title: &str, body: &str, scripts: Option<Scripts<'_>>) -> String {
     let mut out = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\

@@ -1,8 +1,8 @@
-//! Small solids drawn as meshes: arrows and friction cones, true to scale in every view.
+//! Arrows and friction cones as meshes.
 
 use crate::mesh::Mesh;
 
-/// Points around a circle; enough to look round at the size of an arrow.
+/// Number of points around a circle: enough to look round at the size of an arrow.
 const SEGMENTS: u32 = 14;
 
 /// An arrow from `tail` to `tip`: a cylinder of `radius` and a head of 2.6 times that.
@@ -25,7 +25,7 @@ pub(crate) fn arrow(tail: [f64; 3], tip: [f64; 3], radius: f64) -> Mesh {
     fan(&mut mesh, shaft_start, tail);
     let collar = ring(&mut mesh, neck, frame, 2.6 * radius);
     bridge(&mut mesh, shaft_end, collar);
-    // The head has a rim of its own, so that lighting does not smooth over the edge.
+    // The head has its own rim vertices, so that shading does not smooth the edge.
     let rim = ring(&mut mesh, neck, frame, 2.6 * radius);
     fan(&mut mesh, rim, tip);
     mesh
@@ -72,7 +72,7 @@ fn fan(mesh: &mut Mesh, rim: u32, point: [f64; 3]) {
 
 /// Two unit vectors that span the plane normal to the unit vector `axis`.
 fn normal_frame(axis: [f64; 3]) -> [[f64; 3]; 2] {
-    // The coordinate axis least aligned with `axis` keeps the cross product away from zero.
+    // The cross product with the coordinate axis least aligned with `axis` is far from zero.
     let mut reference = [0.0; 3];
     let least = (0..3)
         .min_by(|&a, &b| axis[a].abs().total_cmp(&axis[b].abs()))

@@ -10,13 +10,13 @@ use crate::theme;
 
 const SCRIPT: &str = include_str!("assets/grasp_page.js");
 
-/// The page as self-contained HTML: a view that turns, a selector, a table of the grasps.
+/// The page as self-contained HTML: a rotatable view, a selector, and a table of the grasps.
 ///
-/// The arrows stand outside the object and press along the inward normals; the friction
-/// cones open outwards from the contacts. Coordinates are shown in millimetres, rounded to
-/// 0.01 mm. Adding `#3` to the address of the page opens it at the grasp of rank 3; the arrow keys
-/// go to the previous and the next. Size is that of plotly.js, compressed (1.9 MB), and about 0.3 MB
-/// for a mesh of 10,000 vertices.
+/// The arrows are outside the object and press along the inward normals. The friction cones open
+/// outwards from the contacts. Coordinates are shown in millimetres. Adding `#3` to the address of
+/// the page opens it at the grasp of rank 3; the arrow keys select the previous and the next grasp.
+/// The page has the size of compressed plotly.js (1.9 MB) plus about 0.3 MB for a mesh of 10,000
+/// vertices.
 ///
 /// # Errors
 /// [`ReportError`] names the part and entry of the first number that is not finite, of a
@@ -40,7 +40,7 @@ pub fn grasp_page(page: &GraspPage) -> Result<String, ReportError> {
     Ok(document(&page.title, &body, Some(scripts)))
 }
 
-/// Controls and view on the left, with the facts of the selected grasp below.
+/// Controls and view on the left, with the details of the selected grasp below.
 fn view_html(page: &GraspPage) -> String {
     let mut out = String::from("<div class=\"left\">\n");
     out += &controls_html(page);
@@ -120,7 +120,7 @@ fn controls_html(page: &GraspPage) -> String {
     out
 }
 
-/// The facts of one grasp; only those of the selected grasp are shown.
+/// The details of one grasp; only those of the selected grasp are visible.
 fn details_html(index: usize, grasp: &PageGrasp) -> String {
     let hidden = if index == 0 { "" } else { " hidden" };
     let name = if grasp.label.is_empty() {
@@ -163,12 +163,12 @@ fn details_html(index: usize, grasp: &PageGrasp) -> String {
     out
 }
 
-/// A dot of the colour of a mark in the view.
+/// A dot in the colour of a mark in the view.
 fn dot(colour: &str) -> String {
     format!("<span class=\"dot\" style=\"background:{colour}\"></span>")
 }
 
-/// Three components with three decimals.
+/// Three components with three decimals each.
 fn vector_text(v: [f64; 3]) -> String {
     v.map(|x| format!("{:.3}", rounding::decimals(x, 3)))
         .join(", ")
@@ -218,7 +218,7 @@ fn row_html(index: usize, grasp: &PageGrasp) -> String {
     )
 }
 
-/// Four decimals: two grasps that differ by less are equal to a reader.
+/// Quality with four decimals.
 fn quality_text(quality: f64) -> String {
     format!("{:.4}", rounding::decimals(quality, 4))
 }

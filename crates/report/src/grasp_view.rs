@@ -1,7 +1,7 @@
 //! The 3-D view of a grasp page as data for its script.
 //!
-//! The script finds the role of a trace in its `meta` (`surface`, `cloud`, `grasp`,
-//! `cones`, `hand`) and shows the fixed traces with those of the selected grasp.
+//! The script reads the role of a trace from its `meta` (`surface`, `cloud`, `grasp`, `cones`,
+//! `hand`). It shows the fixed traces and those of the selected grasp.
 
 use plotly::common::{HoverInfo, Position};
 use plotly::layout::Margin;
@@ -17,9 +17,9 @@ use crate::theme;
 use crate::trace;
 use crate::view::{EYE_DIRECTION, View, ViewProjection};
 
-/// Points of the cloud that are drawn at most: every k-th of more.
+/// Largest number of cloud points that are drawn; of a larger cloud every k-th point is drawn.
 const MAX_CLOUD_POINTS: usize = 4000;
-/// Length of an arrow as a share of the diagonal of the object's box.
+/// Length of an arrow as a share of the diagonal of the object's bounding box.
 const ARROW: f64 = 0.2;
 /// Slant length of a friction cone as a share of the same diagonal.
 const CONE: f64 = 0.11;
@@ -48,7 +48,7 @@ pub(crate) fn json(page: &GraspPage) -> String {
     value.to_string()
 }
 
-/// Room for everything that is ever shown.
+/// The box of everything that can be shown.
 fn bounds(page: &GraspPage, object: Extent) -> Extent {
     let mut bounds = object.padded(0.1 * object.diagonal());
     for grasp in &page.grasps {
@@ -61,7 +61,8 @@ fn bounds(page: &GraspPage, object: Extent) -> Extent {
     bounds
 }
 
-/// The view of one grasp: the object, and the hand from its side, so that neither hides the other.
+/// The view of one grasp: the object, with the hand seen from the side, so that neither hides the
+/// other.
 fn view(bounds: Extent, object: Extent, grasp: Option<&PageGrasp>) -> View<'static> {
     let mut subject = object.padded(0.5 * ARROW * object.diagonal());
     let mut from = EYE_DIRECTION;
@@ -70,7 +71,7 @@ fn view(bounds: Extent, object: Extent, grasp: Option<&PageGrasp>) -> View<'stat
         from = across(glyph::subtract(hand.centre(), object.centre()));
         subject = object;
         subject.grow(&[hand.low, hand.high]);
-        // The corners of so large a box are empty.
+        // The corners of the box are usually empty.
         subject = subject.padded(-0.06 * subject.diagonal());
     }
     View {
@@ -81,8 +82,8 @@ fn view(bounds: Extent, object: Extent, grasp: Option<&PageGrasp>) -> View<'stat
     }
 }
 
-/// The direction at a right angle to `line` that is nearest to the usual one to the camera; the
-/// usual one where they are nearly parallel.
+/// The direction at a right angle to `line` that is nearest to the default direction of the camera;
+/// the default direction if the two are nearly parallel.
 fn across(line: [f64; 3]) -> [f64; 3] {
     let square = line.iter().map(|v| v * v).sum::<f64>();
     let along: f64 = (0..3).map(|i| line[i] * EYE_DIRECTION[i]).sum();
@@ -119,7 +120,7 @@ fn fixed_plot(page: &GraspPage, view: &View) -> Plot {
     plot
 }
 
-/// Contacts with their numbers, arrows, cones and hand of one grasp.
+/// Numbered contacts, arrows, cones and hand of one grasp.
 fn grasp_traces(grasp: &PageGrasp, friction: f64, object: Extent) -> Traces {
     let diagonal_mm = object.diagonal();
     let contacts = in_millimetres(&grasp.contacts);
@@ -130,7 +131,7 @@ fn grasp_traces(grasp: &PageGrasp, friction: f64, object: Extent) -> Traces {
     for (&contact, out) in contacts.iter().zip(outward_normals(grasp)) {
         let tail = glyph::add(contact, glyph::scale(out, arrow_length));
         arrows.append(&glyph::arrow(tail, contact, 0.028 * arrow_length));
-        // A cone of constant slant length keeps its size when μ is large.
+        // With a constant slant length the cone stays the same size for large μ.
         let height = CONE * diagonal_mm / friction.hypot(1.0);
         cones.append(&glyph::cone(contact, out, height, friction * height));
     }
@@ -183,7 +184,7 @@ fn outward_normals(grasp: &PageGrasp) -> impl Iterator<Item = [f64; 3]> {
     inward.map(|&n| glyph::scale(n, -1.0 / glyph::norm(n)))
 }
 
-/// Where the numbers of the contacts stand: just beyond the tails of the arrows.
+/// Positions of the contacts' numbers: just beyond the tails of the arrows.
 fn label_positions(grasp: &PageGrasp, diagonal_mm: f64) -> Vec<[f64; 3]> {
     let contacts = in_millimetres(&grasp.contacts);
     let pairs = contacts.iter().zip(outward_normals(grasp));
@@ -192,7 +193,8 @@ fn label_positions(grasp: &PageGrasp, diagonal_mm: f64) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// A part of the weakest wrench, from the middle of the object; its length is its share of the wrench.
+/// The force or torque of the weakest wrench, as an arrow from the middle of the object; its length
+/// is its share of the wrench.
 fn wrench_arrow(part: [f64; 3], colour: &'static str, object: Extent) -> Option<Box<dyn Trace>> {
     let share = glyph::norm(part);
     if share < 0.05 {
@@ -232,7 +234,7 @@ fn in_millimetres(points_m: &[[f64; 3]]) -> Vec<[f64; 3]> {
     points_m.iter().map(|&p| point_millimetres(p)).collect()
 }
 
-/// Rounds points that are in millimetres already.
+/// Rounds points given in millimetres.
 fn rounded(points_mm: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let points = points_mm.iter();
     points.map(|p| p.map(|v| millimetres(v * 1e-3))).collect()

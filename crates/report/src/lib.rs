@@ -1,19 +1,17 @@
-//! Pictures and pages: plain data in, one self-contained HTML page out.
+//! Figures and pages: plain data in, one self-contained HTML page out.
 //!
-//! Two entry points, both of which return the whole page as a `String` and leave
-//! writing it to the caller:
+//! Two functions return a whole page as a `String`; the caller writes it:
 //!
-//! - [`grasp_page`]: the ranked grasps of one object, in a view that one can turn.
-//! - [`Page::to_html`]: headings, text, tables, and figures ([`Chart`], [`Bars`],
-//!   [`Histogram`], [`Scene`], [`SceneGrid`]) for the experiments.
+//! - [`grasp_page`]: the ranked grasps of one object, in a rotatable view.
+//! - [`Page::to_html`]: headings, text, tables, and figures ([`Chart`], [`Bars`], [`Histogram`],
+//!   [`Scene`], [`SceneGrid`]) for the experiments.
 //!
-//! A page carries plotly.js inside and states a content policy under which a browser
-//! fetches nothing, so it opens without a network. All text given by the caller is
-//! plain text: it is escaped for HTML, for JSON and for the markup that plotly.js
-//! reads. Numbers must be finite; a page is refused with a [`ReportError`] that names
-//! the offending place otherwise. The same input gives the same bytes.
+//! A page contains plotly.js and has a content policy under which a browser fetches nothing, so it
+//! opens without a network. All text given by the caller is plain text: it is escaped for HTML, for
+//! JSON and for the markup of plotly.js. Numbers must be finite; otherwise the result is a
+//! [`ReportError`] that names the place. The same input gives the same bytes.
 //!
-//! This crate recomputes nothing and knows no shape, hand or quality.
+//! This crate displays given numbers. It computes no shapes, hands or qualities.
 //!
 //! ```
 //! use report::{GraspPage, Mesh, grasp_page};

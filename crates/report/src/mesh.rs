@@ -1,4 +1,4 @@
-//! Triangle meshes as plain data.
+//! Triangle meshes.
 
 use crate::check;
 use crate::error::ReportError;
@@ -8,14 +8,14 @@ use crate::error::ReportError;
 pub struct Mesh {
     /// Vertices (n × 3), in the unit of the figure (metres in a [`GraspPage`](crate::GraspPage)).
     pub vertices: Vec<[f64; 3]>,
-    /// Three vertex positions each; either winding.
+    /// Three vertex indices per triangle, with either orientation.
     pub triangles: Vec<[u32; 3]>,
 }
 
 impl Mesh {
     /// Appends another mesh as a separate piece.
     ///
-    /// Useful to join the boxes and cylinders of a hand into one mesh. Cost O(other).
+    /// For example to join the boxes and cylinders of a hand into one mesh. Cost O(other).
     ///
     /// ```
     /// let triangle = report::Mesh {
@@ -61,7 +61,7 @@ pub(crate) struct Extent {
 }
 
 impl Extent {
-    /// The box of no point: it grows to whatever it meets first.
+    /// The box of no points; its union with any box is that box.
     pub(crate) const EMPTY: Extent = Extent {
         low: [f64::INFINITY; 3],
         high: [f64::NEG_INFINITY; 3],
@@ -102,7 +102,7 @@ impl Extent {
         self.size().iter().map(|s| s * s).sum::<f64>().sqrt()
     }
 
-    /// The box grown by `margin` on every side.
+    /// The box enlarged by `margin` on every side.
     pub(crate) fn padded(&self, margin: f64) -> Extent {
         Extent {
             low: self.low.map(|v| v - margin),

@@ -1,4 +1,4 @@
-//! Data of a page in little room: text, deflated and in base64.
+//! Compact data of a page: text, deflated and in base64.
 //!
 //! Coordinates stay decimal numbers: rounded to 0.02 mm they deflate to less room than their bytes do.
 
@@ -13,26 +13,27 @@ use serde_json::{Value, json};
 /// plotly.js, deflated (zlib) and in base64.
 pub(crate) const PLOTLY: &str = include_str!(concat!(env!("OUT_DIR"), "/plotly.js.zlib.base64"));
 
-/// Text, deflated (zlib) and in base64; the browser unpacks it by its own `DecompressionStream`.
+/// Text, deflated (zlib) and in base64; the browser unpacks it with `DecompressionStream`.
 pub(crate) fn deflated(text: &str) -> String {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
-    // Writing to memory does not fail.
+    // Writing to memory cannot fail.
     let written = encoder.write_all(text.as_bytes());
     let bytes = written.and_then(|()| encoder.finish()).unwrap_or_default();
     STANDARD.encode(bytes)
 }
 
-/// What the plotly crate writes, as a value.
+/// The JSON of the plotly crate, parsed.
 pub(crate) fn figure_value(json: &str) -> Value {
-    // The plotly crate writes JSON; anything else would be seen as an empty figure.
+    // The plotly crate writes valid JSON; anything else would show as an empty figure.
     serde_json::from_str(json).unwrap_or(Value::Null)
 }
 
-/// Sets the light of all meshes of a figure: over the viewer's left shoulder, whichever way the object
-/// is turned.
+/// Sets the light of all meshes of a figure: over the viewer's left shoulder, for every orientation
+/// of the object.
 ///
-/// plotly.js takes its position in coordinates of the screen (right, up, and depth with −1 at the near
-/// plane), so that one place in space has other numbers in a `flat` (parallel) view.
+/// plotly.js takes the light's position in screen coordinates (right, up, and depth with −1 at the
+/// near plane). The same position in space therefore has other coordinates in a `flat` (parallel)
+/// view.
 pub(crate) fn set_light(value: &mut Value, flat: bool) {
     match value {
         Value::Array(list) => list.iter_mut().for_each(|v| set_light(v, flat)),

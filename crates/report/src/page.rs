@@ -17,7 +17,7 @@ const SCRIPT: &str = include_str!("assets/figures.js");
 pub struct Page {
     /// Title of the page.
     pub title: String,
-    /// Introduction; blank lines part paragraphs.
+    /// Introduction; blank lines separate paragraphs.
     pub intro: String,
     /// The sections from top to bottom.
     pub sections: Vec<Section>,
@@ -28,7 +28,7 @@ pub struct Page {
 pub struct Section {
     /// Heading.
     pub heading: String,
-    /// Text before the blocks; blank lines part paragraphs.
+    /// Text before the blocks; blank lines separate paragraphs.
     pub text: String,
     /// Figures and tables from top to bottom.
     pub blocks: Vec<Block>,
@@ -49,24 +49,25 @@ pub enum Block {
     SceneGrid(SceneGrid),
     /// A table.
     Table(Table),
-    /// Paragraphs; blank lines part them.
+    /// Paragraphs, separated by blank lines.
     Text(String),
 }
 
-/// What the style sheet and the script must know of a figure.
+/// How the style sheet and the script treat a figure.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
-    /// Drawn at once.
+    /// A plane figure, drawn at once.
     Plane,
-    /// Takes a graphics context, of which browsers grant about sixteen: drawn when in view.
+    /// A 3-D figure, drawn when it is in view, since browsers grant only about sixteen graphics
+    /// contexts.
     Scene,
-    /// The same, and its view fits one shape only.
+    /// A 3-D figure whose view has a fixed aspect ratio.
     Grid,
 }
 
 impl Page {
-    /// The whole page as self-contained HTML, plotly.js embedded once (1.9 MB, compressed)
-    /// if there is any figure.
+    /// The whole page as self-contained HTML. plotly.js (1.9 MB, compressed) is embedded once if
+    /// there is a figure.
     ///
     /// Text is escaped. Cost is linear in the data.
     ///
@@ -100,7 +101,7 @@ impl Page {
     }
 }
 
-/// The HTML of a block; the data of a figure joins `figures`.
+/// The HTML of a block; the data of a figure is appended to `figures`.
 fn block_html(
     block: &Block,
     place: &str,
@@ -125,7 +126,7 @@ fn block_html(
     Ok(figure_html(&id, title, shape, kind))
 }
 
-/// The place of a figure; `shape` is height over width.
+/// The container of a figure; `shape` is height over width.
 fn figure_html(id: &str, title: &str, shape: f64, kind: Kind) -> String {
     let caption = if title.is_empty() {
         String::new()

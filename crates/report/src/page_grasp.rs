@@ -1,21 +1,21 @@
-//! What the page of one object shows.
+//! The content of the page of one object.
 
 use crate::check;
 use crate::error::ReportError;
 use crate::mesh::Mesh;
 
-/// What the page of one object shows. All points are in one frame, in metres.
+/// The content of the page of one object. All points are in one frame, in metres.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct GraspPage {
     /// Name of the object: title and heading.
     pub title: String,
-    /// Lines under the heading: size, certified radius bounds, convention, time.
+    /// Lines below the heading: size, certified radius bounds, convention, time.
     pub subtitle_lines: Vec<String>,
     /// The surface of the object.
     pub mesh: Mesh,
     /// The measured cloud (n × 3); at most 4,000 of its points are drawn. May be empty.
     pub cloud: Vec<[f64; 3]>,
-    /// Coefficient of friction μ ≥ 0: friction cones of half angle atan μ; 0 draws none.
+    /// Coefficient of friction μ ≥ 0; the friction cones have half angle atan μ, and 0 draws none.
     pub friction: f64,
     /// The grasps, best first: rank 1 is entry 0. May be empty.
     pub grasps: Vec<PageGrasp>,
@@ -30,11 +30,11 @@ pub struct PageGrasp {
     pub quality: f64,
     /// Proved lower bound of the quality.
     pub lower: f64,
-    /// Where the grasp comes from, as in `"transfer from S5"` or `"synthesis"`.
+    /// Origin of the grasp, such as `"transfer from S5"` or `"synthesis"`.
     pub source: String,
     /// Contact points (m × 3), metres.
     pub contacts: Vec<[f64; 3]>,
-    /// Inward normals at the contacts (m × 3), of any length above zero.
+    /// Inward normals at the contacts (m × 3), of any positive length.
     pub inward_normals: Vec<[f64; 3]>,
     /// Distances of the contacts from the nearest point of the cloud, metres; empty without a cloud.
     pub distances_to_cloud: Vec<f64>,
@@ -42,13 +42,14 @@ pub struct PageGrasp {
     pub weakest: Option<WeakestWrench>,
     /// The pose of the palm and the joints as text to copy; empty without a hand.
     pub pose: String,
-    /// Further facts as name and value, as in joint angles of a hand.
+    /// Further facts as name and value, such as the joint angles of a hand.
     pub details: Vec<(String, String)>,
-    /// The hand around the object, metres. Worth giving for the best few.
+    /// The hand at the grasp, metres. It enlarges the page, so give it for the best few grasps
+    /// only.
     pub hand: Option<Mesh>,
 }
 
-/// The unit wrench in the direction of the deciding facet: what the grasp resists least.
+/// The unit wrench normal to the facet nearest to the origin: what the grasp resists least.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeakestWrench {
     /// Force part.

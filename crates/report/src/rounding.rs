@@ -1,4 +1,4 @@
-//! Fewer digits: what a picture cannot show is not worth its bytes.
+//! Rounding of numbers to the precision that a figure can show.
 
 /// Metres to millimetres, rounded to 0.02 mm.
 ///

@@ -11,16 +11,16 @@ use crate::scene_item::{ColourScale, Colours, Item};
 use crate::theme;
 use crate::view::{EYE_DIRECTION, View, ViewProjection};
 
-/// One 3-D view that can be turned, with equal scales on all axes.
+/// One rotatable 3-D view with equal scales on all axes.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Scene {
     /// Caption above the figure.
     pub title: String,
-    /// Axis titles with their unit, as in `"x / mm"`; `None` draws no axes.
+    /// Axis titles with their unit, such as `"x / mm"`; `None` draws no axes.
     pub axes: Option<[String; 3]>,
-    /// What is shown; parts, points and lines take the colours of the palette in this order.
+    /// What is shown. Parts, points and lines take the colours of the palette in this order.
     pub items: Vec<Item>,
-    /// How surface values become colours.
+    /// Colour map of surface values.
     pub colour_scale: ColourScale,
     /// Title of the colour bar.
     pub value_label: String,
@@ -78,7 +78,7 @@ impl Scene {
     }
 }
 
-/// A legend in one row above the figure, which leaves the width to the figure.
+/// A legend in one row above the figure, so that the figure has the full width.
 pub(crate) fn legend_on_top() -> Legend {
     Legend::new()
         .orientation(Orientation::Horizontal)
@@ -89,7 +89,7 @@ pub(crate) fn legend_on_top() -> Legend {
         .background_color(theme::CLEAR)
 }
 
-/// Decimals that keep 1e-5 of a figure of this size.
+/// Number of decimals that resolves 1e-5 of a figure of this size.
 pub(crate) fn decimals_for(size: f64) -> i32 {
     if size > 0.0 {
         5 - size.log10().floor() as i32

@@ -1,4 +1,4 @@
-//! Several small views side by side, laid out in one 3-D scene.
+//! Several small views side by side in one 3-D scene.
 
 use plotly::Plot;
 use plotly::common::Position;
@@ -20,17 +20,17 @@ const GAP: f64 = 0.18;
 
 /// Objects in rows and columns, all to one scale, each with its label below.
 ///
-/// All cells stand in the xz-plane of one scene seen from the front (−y), so a page of
-/// fifty surfaces needs one graphics context, and turning turns the whole grid.
+/// All cells are in the xz-plane of one scene seen from the front (−y). So a page of fifty surfaces
+/// needs one graphics context, and the whole grid is rotated at once.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SceneGrid {
     /// Caption above the figure.
     pub title: String,
-    /// Cells a row; at least 1.
+    /// Cells per row; at least 1.
     pub columns: usize,
-    /// Cells, row by row from the top left; one without items stays blank.
+    /// Cells, row by row from the top left; a cell without items is blank.
     pub cells: Vec<SceneCell>,
-    /// How surface values become colours, the same for all cells.
+    /// Colour map of surface values, the same for all cells.
     pub colour_scale: ColourScale,
     /// Title of the colour bar.
     pub value_label: String,
@@ -41,7 +41,7 @@ pub struct SceneGrid {
 pub struct SceneCell {
     /// Text below the cell; may be empty.
     pub label: String,
-    /// What the cell shows, in coordinates of its own; it is centred by the grid.
+    /// What the cell shows, in its own coordinates; the grid centres it.
     pub items: Vec<Item>,
 }
 
@@ -57,7 +57,7 @@ impl SceneCell {
     }
 }
 
-/// Where the cells of a grid stand.
+/// Layout of the cells of a grid.
 struct Lattice {
     columns: usize,
     /// Largest cell: width, depth, height.
@@ -76,7 +76,7 @@ impl Lattice {
         let longest = cell.into_iter().fold(1e-9, f64::max);
         Lattice {
             columns: grid.columns.max(1),
-            // A flat cell keeps some room, so that neither labels nor the view collapse.
+            // A minimum size, so that labels and view do not collapse for flat cells.
             cell: cell.map(|v| v.max(0.2 * longest)),
             gap: GAP * longest,
         }
@@ -88,12 +88,12 @@ impl Lattice {
         [
             column as f64 * (self.cell[0] + self.gap),
             0.0,
-            // Below each row there is room for the labels.
+            // Space for the labels below each row.
             -(row as f64) * (self.cell[2] + 1.6 * self.gap),
         ]
     }
 
-    /// Where the label of the `k`-th cell stands.
+    /// Position of the label of the `k`-th cell.
     fn label(&self, k: usize) -> [f64; 3] {
         let mut position = self.centre(k);
         position[2] -= 0.5 * self.cell[2] + 0.6 * self.gap;
@@ -173,14 +173,14 @@ impl SceneGrid {
         );
     }
 
-    /// Height over width of the whole grid, by which the page shapes the figure.
+    /// Height over width of the whole grid, which is the aspect ratio of its figure.
     pub(crate) fn shape(&self) -> f64 {
         let extents: Vec<Extent> = self.cells.iter().map(SceneCell::extent).collect();
         shape_of(&Lattice::of(self, &extents).bounds(self.cells.len()))
     }
 }
 
-/// Height over width of the picture of a grid.
+/// Height over width of the projection of a grid.
 fn shape_of(bounds: &Extent) -> f64 {
     let size = bounds.size();
     (size[2] / size[0]).clamp(0.2, 1.4)

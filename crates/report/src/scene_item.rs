@@ -1,4 +1,4 @@
-//! What a scene can hold: surfaces, parts, points, lines, arrows.
+//! Items of a scene: surfaces, parts, points, lines, arrows.
 
 use plotly::Trace;
 use plotly::common::{ColorBar, ColorScale, ColorScalePalette, HoverInfo, ThicknessMode, Title};
@@ -12,34 +12,34 @@ use crate::text;
 use crate::theme;
 use crate::trace;
 
-/// One thing in a [`Scene`](crate::Scene) or a cell of a [`SceneGrid`](crate::SceneGrid).
+/// One item of a [`Scene`](crate::Scene) or of a cell of a [`SceneGrid`](crate::SceneGrid).
 #[derive(Debug, Clone, PartialEq)]
 pub enum Item {
-    /// A lit surface, plain or coloured by a scalar.
+    /// A shaded surface, plain or coloured by a scalar.
     Surface(Surface),
-    /// A lit surface in a colour of its own.
+    /// A shaded surface with a colour of the palette.
     Part(Part),
     /// Unconnected points.
     Points(Points),
     /// One polyline.
     Lines(Lines),
-    /// Arrows that end at given points.
+    /// Arrows that end at the given points.
     Arrows(Arrows),
 }
 
-/// A lit surface.
+/// A shaded surface.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Surface {
     /// The mesh.
     pub mesh: Mesh,
-    /// A scalar a vertex that colours the surface; empty for a plain surface.
+    /// One scalar per vertex, which colours the surface; empty for a plain surface.
     pub values: Vec<f64>,
 }
 
-/// A lit surface in a colour of the palette.
+/// A shaded surface in a colour of the palette.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Part {
-    /// Name in the legend; no entry if empty.
+    /// Name in the legend; an empty name has no entry.
     pub name: String,
     /// The mesh.
     pub mesh: Mesh,
@@ -48,11 +48,11 @@ pub struct Part {
 /// Unconnected points of one colour.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Points {
-    /// Name in the legend; no entry if empty.
+    /// Name in the legend; an empty name has no entry.
     pub name: String,
     /// Positions (n × 3).
     pub points: Vec<[f64; 3]>,
-    /// A text beside each point; empty for none.
+    /// One text per point; empty for none.
     pub labels: Vec<String>,
     /// Diameter in pixels.
     pub size_px: usize,
@@ -61,37 +61,37 @@ pub struct Points {
 /// One polyline.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Lines {
-    /// Name in the legend; no entry if empty.
+    /// Name in the legend; an empty name has no entry.
     pub name: String,
-    /// Corners in order (n × 3).
+    /// Vertices in order (n × 3).
     pub points: Vec<[f64; 3]>,
 }
 
-/// Arrows of one colour; `tips[i]` is reached along `directions[i]`.
+/// Arrows of one colour; arrow i ends at `tips[i]` and points along `directions[i]`.
 ///
-/// With tips at contacts and inward normals as directions the arrows stand outside the
-/// object and press on it.
+/// With contacts as tips and inward normals as directions, the arrows are outside the object and
+/// press on it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Arrows {
-    /// Where the arrows end (n × 3).
+    /// End points of the arrows (n × 3).
     pub tips: Vec<[f64; 3]>,
-    /// The way they point (n × 3), any length above zero.
+    /// Directions of the arrows (n × 3), of any positive length.
     pub directions: Vec<[f64; 3]>,
     /// Length of each arrow in the unit of the scene.
     pub length: f64,
 }
 
-/// How scalars become colours; the range is that of all values of the figure.
+/// Map from scalars to colours; its range is that of all values of the figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ColourScale {
     /// From the smallest to the largest value (Viridis).
     #[default]
     Sequential,
-    /// Blue below zero, red above, the same range on both sides.
+    /// Blue below zero, red above, with a symmetric range.
     Diverging,
 }
 
-/// Colours of a figure: the scale, its bounds, its title.
+/// Colour map of a figure: the scale, its bounds, its title.
 pub(crate) struct Colours {
     pub(crate) scale: ColourScale,
     pub(crate) range: [f64; 2],
@@ -148,7 +148,7 @@ impl Item {
         }
     }
 
-    /// All points that the item reaches.
+    /// The box of all points of the item.
     pub(crate) fn extent(&self) -> Extent {
         match self {
             Item::Surface(surface) => Extent::of(&surface.mesh.vertices),
@@ -208,7 +208,7 @@ impl Item {
         }
     }
 
-    /// Whether the item takes a colour of its own from the series palette.
+    /// Whether the item takes a colour from the series palette.
     pub(crate) fn takes_series_colour(&self) -> bool {
         matches!(self, Item::Part(_) | Item::Points(_) | Item::Lines(_))
     }
@@ -279,7 +279,7 @@ fn surface_trace(
                 .title(Title::with_text(&colours.title).font(theme::muted_font()))
                 .tick_font(theme::muted_font())
                 .thickness(12)
-                // In pixels, which leaves the corner to the buttons.
+                // In pixels, which leaves the corner free for the buttons.
                 .len_mode(ThicknessMode::Pixels)
                 .len(180)
                 .outline_width(0),

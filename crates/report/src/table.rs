@@ -4,14 +4,14 @@ use crate::check;
 use crate::error::ReportError;
 use crate::text;
 
-/// A table; cells that read as numbers are set flush right.
+/// A table; columns of numbers are aligned to the right.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Table {
     /// Caption above the table; may be empty.
     pub title: String,
-    /// One header a column.
+    /// One header per column.
     pub headers: Vec<String>,
-    /// Rows of as many cells as there are headers.
+    /// Rows, each with as many cells as there are headers.
     pub rows: Vec<Vec<String>>,
 }
 
@@ -41,7 +41,7 @@ impl Table {
         Ok(out)
     }
 
-    /// The class attribute of a column: numeric if every filled cell starts like a number.
+    /// The class attribute of a column: numeric if every non-empty cell starts like a number.
     fn class(&self, column: usize) -> &'static str {
         let cells = self.rows.iter().filter_map(|row| row.get(column));
         let mut filled = cells.filter(|cell| !cell.is_empty()).peekable();

@@ -1,4 +1,4 @@
-//! Escaping: every string of the caller passes through one of these on its way out.
+//! Escaping: every text of the caller passes through one of these functions.
 
 /// Escapes text for HTML content and for attribute values in double or single quotes.
 pub(crate) fn html(text: &str) -> String {
@@ -16,11 +16,11 @@ pub(crate) fn html(text: &str) -> String {
     out
 }
 
-/// Plain text for plotly.js, which reads a little markup of its own (`<b>`, `<a href>`,
-/// entities, `%{…}` in templates) that user text must not reach.
+/// Plain text for plotly.js, which interprets some markup (`<b>`, `<a href>`, entities, `%{…}` in
+/// templates) that must not occur in user text.
 ///
-/// Angle brackets become their look-alikes `‹ ›`, since the text drawn by WebGL knows no
-/// escape for them, and a zero-width space parts `&` and `%` from what follows.
+/// Angle brackets are replaced by `‹ ›`, since text drawn by WebGL has no escape for them. A
+/// zero-width space separates `&` and `%` from the text that follows.
 pub(crate) fn plot(text: &str) -> String {
     let mut out = String::with_capacity(text.len() + 4);
     for c in text.chars() {
@@ -35,7 +35,7 @@ pub(crate) fn plot(text: &str) -> String {
     out
 }
 
-/// Paragraphs of HTML: the text is parted at blank lines.
+/// Paragraphs of HTML; the text is split at blank lines.
 pub(crate) fn paragraphs(text: &str) -> String {
     text.split("\n\n")
         .map(str::trim)

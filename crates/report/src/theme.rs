@@ -5,7 +5,7 @@ use plotly::configuration::DisplayModeBar;
 use plotly::layout::ModeBar;
 use plotly::{Configuration, Layout};
 
-/// Fonts that every system has; the same list stands in the style sheet.
+/// Fonts that every system has; the style sheet has the same list.
 pub(crate) const FONT_FAMILY: &str =
     "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', 'DejaVu Sans', sans-serif";
 /// Body text.
@@ -41,8 +41,8 @@ pub(crate) fn distance_colour(distance: f64) -> &'static str {
 /// Fully transparent.
 pub(crate) const CLEAR: &str = "rgba(0,0,0,0)";
 
-/// The palette of Okabe and Ito, told apart with every common colour vision, without its
-/// yellow (too pale on white).
+/// The palette of Okabe and Ito, which is distinguishable with all common forms of colour vision,
+/// without its yellow (too pale on white).
 const SERIES: [&str; 7] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#4d4d4d",
 ];
@@ -52,7 +52,7 @@ pub(crate) fn series_colour(k: usize) -> &'static str {
     SERIES[k % SERIES.len()]
 }
 
-/// Marker of the `k`-th series in the plane: differs where the colours start again.
+/// Marker of the `k`-th series of a plane figure; it changes when the colours repeat.
 pub(crate) fn series_symbol(k: usize) -> MarkerSymbol {
     const SYMBOLS: [MarkerSymbol; 5] = [
         MarkerSymbol::Circle,
@@ -64,7 +64,7 @@ pub(crate) fn series_symbol(k: usize) -> MarkerSymbol {
     SYMBOLS[(k / SERIES.len()) % SYMBOLS.len()].clone()
 }
 
-/// Line style of the `k`-th series: differs where the colours start again.
+/// Line style of the `k`-th series; it changes when the colours repeat.
 pub(crate) fn series_dash(k: usize) -> DashType {
     const DASHES: [DashType; 4] = [
         DashType::Solid,
@@ -85,7 +85,7 @@ pub(crate) fn muted_font() -> Font {
     Font::new().family(FONT_FAMILY).size(12).color(MUTED)
 }
 
-/// A layout without title on a transparent ground.
+/// A layout without title on a transparent background.
 pub(crate) fn layout() -> Layout {
     Layout::new()
         .font(font())
@@ -100,15 +100,15 @@ pub(crate) fn layout() -> Layout {
         .auto_size(true)
 }
 
-/// For plane figures: resizes with the page and leaves the top to the legend. A double
-/// click undoes a zoom.
+/// For plane figures: resized with the page, with the legend on top. A double click resets the
+/// zoom.
 pub(crate) fn configuration() -> Configuration {
     Configuration::new()
         .responsive(true)
         .display_mode_bar(DisplayModeBar::False)
 }
 
-/// For 3-D views: resizes with the page, shows plotly's buttons on hover and no logo.
+/// For 3-D views: resized with the page, with plotly's buttons on hover and no logo.
 pub(crate) fn configuration_3d() -> Configuration {
     Configuration::new()
         .responsive(true)

@@ -1,20 +1,20 @@
-//! The three kinds of thing that a 3-D view draws: meshes, points, lines.
+//! The three kinds of traces of a 3-D view: meshes, points, lines.
 
 use plotly::common::{HoverInfo, Line, Marker, MarkerSymbol, Mode};
 use plotly::traces::mesh3d::Lighting;
 use plotly::{Mesh3D, Scatter3D};
 
-/// A mesh whose coordinates are all numbers.
+/// A mesh with numeric coordinates.
 pub(crate) type MeshTrace = Mesh3D<f64, f64, f64>;
-/// A 3-D scatter whose coordinates are all numbers.
+/// A 3-D scatter with numeric coordinates.
 pub(crate) type ScatterTrace = Scatter3D<f64, f64, f64>;
 
-/// Splits points into the three coordinate lists that plotly.js wants.
+/// Splits points into the three coordinate lists of plotly.js.
 fn columns(points: &[[f64; 3]]) -> [Vec<f64>; 3] {
     std::array::from_fn(|axis| points.iter().map(|p| p[axis]).collect())
 }
 
-/// A lit mesh of one colour with a semi-matte finish, silent on hover.
+/// A shaded mesh of one colour with a semi-matte finish and no hover text.
 pub(crate) fn mesh(
     vertices: &[[f64; 3]],
     triangles: &[[u32; 3]],
@@ -30,7 +30,7 @@ pub(crate) fn mesh(
         .show_legend(false)
 }
 
-/// Mostly diffuse light with a faint sheen.
+/// Mostly diffuse light with a faint gloss.
 fn semi_matte() -> Lighting {
     Lighting::new()
         .ambient(0.5)
@@ -38,8 +38,8 @@ fn semi_matte() -> Lighting {
         .specular(0.12)
         .roughness(0.6)
         .fresnel(0.08)
-        // Triangles are measured in the figure's own unit; in metres the default bounds
-        // would take small ones for degenerate and leave them black.
+        // Triangles are measured in the figure's unit. In metres the default bound would treat
+        // small triangles as degenerate and draw them black.
         .face_normals_epsilon(1e-24)
         .vertex_normals_epsilon(1e-24)
 }
@@ -57,7 +57,7 @@ pub(crate) fn points(
     )
 }
 
-/// Unconnected points, each of its own colour, with a thin outline.
+/// Unconnected points, each with its own colour and a thin outline.
 pub(crate) fn points_of(
     points: &[[f64; 3]],
     colours: Vec<&'static str>,
@@ -87,7 +87,7 @@ pub(crate) fn line(points: &[[f64; 3]], colour: &'static str, width_px: f64) -> 
         .show_legend(false)
 }
 
-/// Text that stands at points.
+/// Text at points.
 pub(crate) fn text(points: &[[f64; 3]], labels: Vec<String>) -> Box<ScatterTrace> {
     let [x, y, z] = columns(points);
     Scatter3D::new(x, y, z)

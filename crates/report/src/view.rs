@@ -1,4 +1,4 @@
-//! How a 3-D view is framed: equal scales on all axes, a camera that shows the subject.
+//! Framing of a 3-D view: equal scales on all axes, and a camera that shows the subject.
 
 use plotly::common::Title;
 use plotly::layout::{
@@ -10,27 +10,27 @@ use crate::mesh::Extent;
 use crate::text;
 use crate::theme;
 
-/// Direction from the subject to the camera in perspective views: right, front, above.
+/// Direction from the subject to the camera in perspective views: from the right, front and above.
 pub(crate) const EYE_DIRECTION: [f64; 3] = [0.56, -0.72, 0.41];
-/// Direction to the camera of a flat view: almost straight from the front.
+/// Direction to the camera of a flat view: almost exactly from the front.
 const FRONT_DIRECTION: [f64; 3] = [0.0, -0.97, 0.24];
 
-/// What a view shows.
+/// The content of a view.
 pub(crate) struct View<'a> {
-    /// All that can be drawn; plotly.js clips at this box.
+    /// The box of everything that can be drawn; plotly.js clips to it.
     pub(crate) bounds: Extent,
-    /// What the camera looks at and fits into the picture at first.
+    /// The box that the camera looks at and that fills the initial picture.
     pub(crate) subject: Extent,
-    /// Axis titles; no axes are drawn without.
+    /// Axis titles; `None` draws no axes.
     pub(crate) axes: Option<[&'a str; 3]>,
     /// Perspective, or parallel projection from the front.
     pub(crate) projection: ViewProjection,
 }
 
-/// How a view is projected.
+/// The projection of a view.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum ViewProjection {
-    /// At a distance that shows the subject.
+    /// Perspective, from a distance at which the subject fits.
     Perspective {
         /// Direction to the camera, a unit vector.
         from: [f64; 3],
@@ -62,8 +62,8 @@ impl View<'_> {
         let [width, _, height] = self.bounds.size();
         let unit = match self.projection {
             ViewProjection::Perspective { .. } => self.bounds.longest(),
-            // A parallel view of plotly.js is 2 units high wherever the camera stands, and
-            // 2/shape wide, of which the colour bar takes its part.
+            // A parallel view of plotly.js is 2 units high and 2/shape wide, independent of the
+            // camera's distance. The colour bar takes part of the width.
             ViewProjection::Front { shape } => (height / 1.95).max(width * shape / 1.75),
         };
         unit.max(f64::MIN_POSITIVE)
@@ -82,14 +82,14 @@ impl View<'_> {
             .projection(Projection::new().projection_type(projection))
     }
 
-    /// Where the camera stands and what it looks at, as plain JSON for a script.
+    /// Position and target of the camera, as JSON for a script.
     pub(crate) fn camera_json(&self) -> String {
         let [eye, centre] = self.eye_and_centre(self.unit());
         let point = |p: [f64; 3]| format!("{{\"x\":{},\"y\":{},\"z\":{}}}", p[0], p[1], p[2]);
         format!("{{\"eye\":{},\"center\":{}}}", point(eye), point(centre))
     }
 
-    /// In coordinates of the camera.
+    /// Eye and centre in coordinates of the camera.
     fn eye_and_centre(&self, unit: f64) -> [[f64; 3]; 2] {
         let middle = self.bounds.centre();
         let target = self.subject.centre();

@@ -1,3 +1,3 @@
-//! The tests of `report` that use it from outside, as one program.
+//! The integration tests of `report`, as one program.
 
 mod pages;

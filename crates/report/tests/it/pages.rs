@@ -1,4 +1,4 @@
-//! Whole pages: what they hold, what they never load, what they refuse.
+//! Whole pages: their content, that they load nothing, and which input is an error.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
