@@ -1,4 +1,4 @@
-//! Surfaces, clouds and contacts as items of a scene, in millimetres; what all figures share.
+//! Surfaces, clouds and contacts as items of a scene, in millimetres; shared by all figures.
 
 use nalgebra::{Point3, Vector3};
 use report::{Arrows, Block, Item, Lines, Mesh, Points, SceneCell, Section, Surface};
@@ -72,7 +72,7 @@ pub fn contacts(shape: &RadialShape, directions: &[Direction]) -> Item {
 pub fn track(shape: &RadialShape, directions: impl Iterator<Item = Direction>) -> Item {
     Item::Lines(Lines {
         name: String::new(),
-        // Lifted by half a millimetre, or the surface would hide half of it.
+        // Lifted by half a millimetre, since the surface would hide parts of it.
         points: directions
             .map(|p| millimetres(&(shape.point(&p).coords + p.into_inner() * 5e-4)))
             .collect(),

@@ -1,4 +1,4 @@
-//! What can stop an experiment.
+//! Errors of experiments.
 
 use std::path::PathBuf;
 
@@ -10,20 +10,20 @@ pub enum ExperimentError {
     Folder {
         /// The folder.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the operating system.
         reason: std::io::Error,
     },
-    /// No object has an id that was asked for.
+    /// No object has the requested id.
     #[error("no object `{id}` in {source_name}; there are {known}")]
     UnknownObject {
         /// The id.
         id: String,
-        /// Where it was looked for.
+        /// Where the id was searched.
         source_name: String,
         /// The ids that exist.
         known: String,
     },
-    /// Too few objects are left.
+    /// Too few objects are usable.
     #[error(
         "{fitted} of {given} objects of {source_name} can be used; expected at least {needed}{reasons}"
     )]
@@ -32,14 +32,14 @@ pub enum ExperimentError {
         fitted: usize,
         /// Objects found.
         given: usize,
-        /// Objects needed.
+        /// Least number of objects.
         needed: usize,
-        /// Where they come from.
+        /// Origin of the objects.
         source_name: String,
-        /// Why others were refused, one line each.
+        /// Why the others were refused, one line each.
         reasons: String,
     },
-    /// No grasp was found where one is needed.
+    /// No stable grasp was found, and the experiment needs one.
     #[error("no stable grasp of {poses} poses on any object; more poses may help")]
     NoGrasps {
         /// Poses tried on each object.
@@ -53,10 +53,10 @@ pub enum ExperimentError {
     Fit {
         /// The object.
         id: String,
-        /// Why.
+        /// The cause.
         source: shape::FitError,
     },
-    /// Points make no cloud.
+    /// Points that are not a usable cloud.
     #[error(transparent)]
     Cloud(#[from] shape::CloudError),
     /// A regression failed.
@@ -80,7 +80,7 @@ pub enum ExperimentError {
     /// A result could not be written.
     #[error(transparent)]
     Write(#[from] run::WriteError),
-    /// Finished jobs could not be kept.
+    /// Completed jobs could not be stored.
     #[error(transparent)]
     Ledger(#[from] run::ledger::LedgerError),
     /// The file of the running program could not be read.
@@ -92,10 +92,10 @@ pub enum ExperimentError {
     /// A surface is not in M^rad.
     #[error(transparent)]
     Radial(#[from] shape::RadialError),
-    /// The library could not be put into bytes.
+    /// The library could not be encoded.
     #[error(transparent)]
     Record(#[from] record::EnvelopeError),
-    /// A result could not be put into JSON.
+    /// A result could not be converted to JSON.
     #[error("cannot write JSON: {0}")]
     Json(#[from] serde_json::Error),
     /// Threads could not be started.
@@ -104,7 +104,7 @@ pub enum ExperimentError {
 }
 
 impl ExperimentError {
-    /// 3 for bad input, 4 for a refusal on numerical grounds, 1 for anything else.
+    /// 3 for bad input, 4 for a numerical refusal, 1 for anything else.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Folder { .. }

@@ -1,6 +1,7 @@
 //! The jobs of a long experiment, resumed after an interruption.
 //!
-//! Finished jobs are kept in a [`run::Ledger`] per phase, in a hidden folder beside the results.
+//! Completed jobs are stored in one [`run::Ledger`] per phase, in a hidden folder beside the
+//! results.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -19,7 +20,7 @@ use crate::error::ExperimentError;
 use crate::pipeline::FittedSet;
 use crate::run::Run;
 
-/// The folder in which the finished jobs of an experiment are kept until its result is written.
+/// The folder that holds the completed jobs of an experiment until its result is written.
 pub fn folder(out: &Path, experiment: &str) -> PathBuf {
     out.join(format!(".{experiment}.unfinished"))
 }
@@ -27,18 +28,18 @@ pub fn folder(out: &Path, experiment: &str) -> PathBuf {
 /// Time of both schemes, summed over threads, seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ThreadSeconds {
-    /// The paper's.
+    /// Time of the paper's scheme.
     pub paper: f64,
-    /// Ours.
+    /// Time of our scheme.
     pub ours: f64,
 }
 
 /// Results of all jobs of a phase.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kept<R> {
-    /// In order of the jobs.
+    /// Results in order of the jobs.
     pub results: Vec<R>,
-    /// Time that the jobs took, summed over threads and over interruptions.
+    /// Time of the jobs, summed over threads and over interruptions.
     pub thread_seconds: f64,
 }
 
@@ -48,13 +49,13 @@ struct Timed<R> {
     result: R,
 }
 
-/// Does jobs over the threads of the pool and keeps every result, in order of the jobs.
+/// Runs jobs on the thread pool and stores every result, in order of the jobs.
 ///
-/// `name` tells the phases of an experiment apart, and `key` is what the results depend on. Without
-/// a folder in `run` nothing is kept.
+/// `name` identifies the phase of an experiment, and `key` is the digest of what the results depend
+/// on. If `run` has no folder, nothing is stored.
 ///
 /// # Errors
-/// The first error of a job, or a ledger that cannot be kept.
+/// The first error of a job, or of the ledger.
 pub fn run_kept<J, R>(
     run: &Run,
     name: &str,
@@ -77,7 +78,7 @@ where
     let kept = results.iter().flatten().count();
     if kept > 0 {
         run.say(&format!(
-            "{kept} of {} {name} are there already",
+            "{kept} of {} {name} are already computed",
             jobs.len()
         ));
     }
@@ -103,7 +104,7 @@ where
         let seconds = began.elapsed().as_secs_f64();
         Ok::<_, ExperimentError>(Timed { seconds, result })
     };
-    // Breaks come with a failure.
+    // The run is only cancelled after an error.
     let _ = run_jobs(jobs, &mut results, timed, progress)?;
     match failure.into_inner().unwrap_or_else(|e| e.into_inner()) {
         Some(error) => Err(error.into()),
@@ -114,8 +115,9 @@ where
     }
 }
 
-/// What the results of a run depend on: the program, the surfaces, the grasps to begin with, the
-/// seed, the convention and the settings of the section, whose `Debug` text names all numbers.
+/// Digest of what the results of a run depend on: the program, the surfaces, the initial grasps,
+/// the seed, the convention and the settings of the section, whose `Debug` text contains all
+/// numbers.
 ///
 /// # Errors
 /// The file of the running program cannot be read.

@@ -2,11 +2,11 @@
 //! program of each.
 //!
 //! Every section of the paper is a module of [`sections`] with three parts: findings (the data), a
-//! measurement that computes them, and figures drawn from them. Its program writes
-//! `OUT/<program>.json` with the numbers of the paper beside ours, and `OUT/<program>.html` with the
-//! figures, and prints a short table. The constants of the paper are in [`paper`].
+//! measurement that computes them, and figures that show them. Its program writes
+//! `OUT/<program>.json`, which has the paper's numbers beside ours, and `OUT/<program>.html` with
+//! the figures. It prints a short table. The constants of the paper are in [`paper`].
 //!
-//! A measurement can be called from a program too:
+//! A measurement can also be called from other code:
 //!
 //! ```
 //! use experiments::sections::eigenfunctions::{Settings, measure};

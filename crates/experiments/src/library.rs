@@ -11,18 +11,18 @@ use crate::paper;
 use crate::pipeline::{FittedScan, fit_all, synthesize};
 use crate::run::fit_settings;
 
-/// How a library is built.
+/// Settings of a library.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LibrarySettings {
-    /// The seed of the scans and of the hand's poses.
+    /// Seed of the scans and of the hand's poses.
     pub seed: u64,
-    /// How scans become surfaces.
+    /// Settings of the fits.
     pub fit: FitSettings,
-    /// How grasps are ranked.
+    /// Convention by which grasps are ranked.
     pub convention: Convention,
-    /// Hand poses around each object.
+    /// Number of hand poses around each object.
     pub poses: usize,
-    /// Grasps kept of each object.
+    /// Which grasps of each object are kept.
     pub kept: Kept,
 }
 
@@ -30,7 +30,7 @@ impl LibrarySettings {
     /// The seed of the library under `fixtures/`.
     pub const SEED: u64 = 2014;
 
-    /// The library under `fixtures/`, with grasps ranked under a convention.
+    /// The settings of the library under `fixtures/`, with grasps ranked under a convention.
     pub fn standard(convention: Convention) -> Self {
         Self {
             seed: Self::SEED,
@@ -42,9 +42,9 @@ impl LibrarySettings {
     }
 }
 
-/// Fits S1 to S12 of the catalogue and keeps the best hand grasps on each, spread out.
+/// Fits S1 to S12 of the catalogue and keeps the best hand grasps on each, at a least separation.
 ///
-/// Uses the current pool of threads; the result does not depend on their number.
+/// Uses the current thread pool; the result does not depend on the number of threads.
 ///
 /// # Errors
 /// An object cannot be fitted, or the hand or the convention cannot be used.

@@ -9,7 +9,7 @@ use shape::PointCloud;
 
 use crate::error::ExperimentError;
 
-/// Where objects come from.
+/// Origin of the objects.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ObjectSource {
     /// S1 to S12 of the catalogue.
@@ -34,7 +34,7 @@ pub struct ObjectCloud {
     pub number: usize,
     /// "S5", or the file's name without its ending.
     pub id: String,
-    /// Name for people; the id again for files.
+    /// Readable name; the id for files.
     pub name: String,
     /// Its points.
     pub cloud: PointCloud,
@@ -47,23 +47,23 @@ pub struct ObjectCloud {
 pub struct Refused {
     /// Its id.
     pub id: String,
-    /// Why.
+    /// The cause.
     pub reason: String,
 }
 
-/// Clouds, and what could not be read.
+/// The usable clouds, and the objects that could not be read.
 #[derive(Clone, Debug)]
 pub struct Objects {
-    /// Where they come from.
+    /// Origin of the objects.
     pub source: ObjectSource,
-    /// Usable clouds in order.
+    /// Usable clouds, in order.
     pub clouds: Vec<ObjectCloud>,
-    /// The others.
+    /// Objects that could not be read.
     pub refused: Vec<Refused>,
 }
 
 impl Objects {
-    /// Scans the catalogue with a seed, or reads a folder.
+    /// Generates scans of the catalogue from a seed, or reads a folder.
     ///
     /// A file that cannot be read or is not a cloud is listed among the refused.
     ///
@@ -97,10 +97,11 @@ impl Objects {
         Ok(objects)
     }
 
-    /// Keeps the objects of the given ids, which keep their numbers; all of them for no ids.
+    /// Keeps the objects with the given ids, with their numbers unchanged; keeps all if there are
+    /// no ids.
     ///
     /// # Errors
-    /// An id is neither that of a cloud nor that of a refused object.
+    /// An id belongs neither to a cloud nor to a refused object.
     pub fn only(mut self, ids: &[String]) -> Result<Self, ExperimentError> {
         let all = self.clouds.iter().map(|c| &c.id);
         let known: Vec<String> = all

@@ -1,4 +1,4 @@
-//! The results of a section, and where its files go.
+//! The results of a section, and the writing of its files.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::table::Table;
 
-/// The results of a section, for its files and for people.
+/// The results of a section, for its files and its printed table.
 #[derive(Clone, Debug)]
 pub struct Results {
     /// The objects used, and those that were refused.
@@ -16,16 +16,16 @@ pub struct Results {
     pub paper: Value,
     /// Our numbers.
     pub ours: Value,
-    /// The main numbers, as a table for people.
+    /// The main numbers, as a table.
     pub table: Table,
     /// The figures.
     pub figures: Vec<report::Section>,
 }
 
-/// Writes a result to `folder/name` and makes the folder where needed.
+/// Writes a result to `folder/name` and creates the folder if needed.
 ///
 /// # Errors
-/// Those of [`run::write()`].
+/// As [`run::write()`].
 pub fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<PathBuf, WriteError> {
     let path = folder.join(name);
     let no_inputs: [&Path; 0] = [];

@@ -1,4 +1,4 @@
-//! The steps that experiments share: surfaces from clouds, and hand grasps on surfaces.
+//! Steps that experiments share: surfaces from clouds, and hand grasps on surfaces.
 
 use moduli::{Convention, Grasp, Grasps, Hand, Object, Poses};
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ use crate::run::{Purpose, Run, stream};
 pub struct FittedScan {
     /// The scan.
     pub scan: ObjectCloud,
-    /// The surface, and where the scan stood.
+    /// The surface, and the position of the scan.
     pub object: Object,
 }
 
@@ -36,7 +36,7 @@ impl FittedScan {
         self.object.shape()
     }
 
-    /// The surface, prepared for ascents; the first call takes some milliseconds.
+    /// The surface prepared for ascents; the first call takes a few milliseconds.
     pub fn field(&self) -> &RadialField {
         self.object.field()
     }
@@ -50,12 +50,12 @@ impl FittedScan {
     }
 }
 
-/// All objects with surfaces, and the others.
+/// The objects with fitted surfaces, and the refused ones.
 #[derive(Clone, Debug)]
 pub struct FittedSet {
-    /// Where they come from.
+    /// Origin of the objects.
     pub source: ObjectSource,
-    /// Fitted objects in order.
+    /// Fitted objects, in order.
     pub objects: Vec<FittedScan>,
     /// Objects that could not be read or fitted.
     pub refused: Vec<Refused>,
@@ -96,7 +96,7 @@ fn describe(fitted: &FittedScan) -> Value {
     })
 }
 
-/// Loads the run's objects, all or those of some numbers, and fits them in parallel.
+/// Loads the run's objects (all, or those with the given numbers) and fits them in parallel.
 ///
 /// # Errors
 /// Fewer than `needed` of them have a surface.
@@ -129,7 +129,7 @@ pub fn fitted_objects(
     })
 }
 
-/// Fits every cloud; those without a surface in M^rad join the refused.
+/// Fits every cloud; those without a surface in M^rad are added to the refused ones.
 pub fn fit_all(objects: Objects, settings: &FitSettings) -> FittedSet {
     let fits: Vec<Result<FittedScan, Refused>> = objects
         .clouds
@@ -158,8 +158,8 @@ pub fn fit_all(objects: Objects, settings: &FitSettings) -> FittedSet {
     set
 }
 
-/// Hand grasps on an object (Sec. IV-C), the best first under the convention; poses are drawn with
-/// the object's own generator.
+/// Hand grasps on an object (Sec. IV-C), the best first under the convention. Every object has its
+/// own random generator for the poses.
 ///
 /// # Errors
 /// A grasp of the hand cannot be computed on this surface.
@@ -185,7 +185,7 @@ pub fn directions(grasps: &[Vec<Grasp>]) -> Vec<Vec<Vec<Direction>>> {
     grasps.iter().map(of).collect()
 }
 
-/// The best hand grasps on every object: at most `count` each, of `poses` poses each.
+/// The best hand grasps on every object: at most `count` per object, from `poses` poses.
 ///
 /// # Errors
 /// No object has a stable grasp.
@@ -197,7 +197,7 @@ pub fn best_grasps(
 ) -> Result<Vec<Vec<Grasp>>, ExperimentError> {
     run.say(&format!("closing the hand from {poses} poses an object"));
     let hand = Hand::schunk_sdh()?;
-    // Surfaces are prepared here, so that no ascent is charged for it.
+    // Surfaces are prepared here, so that the time is not attributed to an ascent.
     set.objects.par_iter().for_each(|fitted| {
         fitted.field();
     });
@@ -212,7 +212,7 @@ pub fn best_grasps(
     Ok(all)
 }
 
-/// What both schemes need, from one object to another.
+/// The transfer from one object to another, for both schemes.
 pub fn transfer_between<'a>(
     run: &'a Run,
     from: &'a FittedScan,

@@ -1,4 +1,4 @@
-//! What every experiment's program does around its section.
+//! The common main function of all experiments' programs.
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -19,8 +19,9 @@ use crate::table::Table;
 /// A section of the paper as a function.
 pub type Experiment = fn(&Run) -> Result<Results, ExperimentError>;
 
-/// Reads the command line, runs the section on its own pool of threads, writes `OUT/<name>.json`
-/// and prints the table. Exit codes: 0 done, 2 usage, 3 bad input, 4 numerical refusal, 1 else.
+/// Reads the command line, runs the section on its own thread pool, writes `OUT/<name>.json` and
+/// prints the table. Exit codes: 0 success, 2 usage, 3 bad input, 4 numerical refusal, 1 other
+/// errors.
 pub fn main(name: &'static str, about: &'static str, section: Experiment) -> ExitCode {
     let args = match Args::read(name, about, std::env::args_os()) {
         Ok(args) => args,
@@ -28,7 +29,7 @@ pub fn main(name: &'static str, about: &'static str, section: Experiment) -> Exi
     };
     match execute(name, about, &args, section) {
         Ok(text) => {
-            // A reader that has gone away is no failure of the experiment.
+            // A closed pipe is not a failure of the experiment.
             let _ = writeln!(std::io::stdout(), "{text}");
             ExitCode::SUCCESS
         }
@@ -36,14 +37,14 @@ pub fn main(name: &'static str, about: &'static str, section: Experiment) -> Exi
     }
 }
 
-/// Prints on stderr why a program of this name stops, and returns its exit code.
+/// Prints the error to stderr and returns its exit code.
 pub fn fail(name: &str, error: &ExperimentError) -> ExitCode {
     let _ = writeln!(std::io::stderr(), "{name}: {error}");
     ExitCode::from(error.exit_code())
 }
 
-/// Runs a section as the arguments say and writes its JSON and its page of pictures; the text is the
-/// table for people.
+/// Runs a section with the given arguments and writes its JSON and its page. Returns the table as
+/// text.
 pub fn execute(
     name: &str,
     about: &str,
@@ -111,7 +112,7 @@ fn refusals(objects: &Value) -> String {
         .collect()
 }
 
-/// The table and the pictures.
+/// The page with the table and the figures.
 fn page(name: &str, about: &str, args: &Args, table: Table, figures: Vec<Section>) -> Page {
     let mut sections = vec![table.section()];
     sections.extend(figures);

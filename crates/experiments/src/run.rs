@@ -12,18 +12,18 @@ use shape::FitSettings;
 use crate::objects::ObjectSource;
 use crate::paper;
 
-/// How much is computed.
+/// Amount of computation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Scale {
-    /// The same computation on fewer objects, poses, grasps or steps; seconds.
+    /// The same computation on fewer objects, poses, grasps or steps; takes seconds.
     Small,
     /// The numbers of the paper.
     Full,
 }
 
 impl Scale {
-    /// As on the command line.
+    /// The name on the command line.
     pub fn name(self) -> &'static str {
         self.pick("small", "full")
     }
@@ -39,31 +39,31 @@ impl Scale {
 
 /// The settings of a run, for every section.
 pub struct Run<'a> {
-    /// Where the objects come from.
+    /// Origin of the objects.
     pub objects: ObjectSource,
-    /// Ids of those that are used; all when empty.
+    /// Ids of the objects to use; all if empty.
     pub only: &'a [String],
-    /// How much is computed.
+    /// Amount of computation.
     pub scale: Scale,
-    /// The seed of every random number.
+    /// Seed of all random numbers.
     pub seed: u64,
-    /// How quality is measured.
+    /// Convention of grasp quality.
     pub convention: Convention,
-    /// How clouds become surfaces.
+    /// Settings of the fits.
     pub fit: FitSettings,
-    /// Folder where long computations keep what is done, see [`crate::ledger`].
+    /// Folder in which long computations store completed jobs, see [`crate::ledger`].
     pub keep: Option<&'a Path>,
-    /// Is called with a line of text when a step begins.
+    /// Called with a line of text when a step begins.
     pub progress: &'a (dyn Fn(&str) + Sync),
 }
 
-/// L and λ as settings of a fit; λ is chosen from the data when absent.
+/// Fit settings from L and λ; if λ is absent it is chosen from the data.
 pub fn fit_settings(degree: usize, lambda: Option<f64>) -> FitSettings {
     FitSettings { degree, lambda }
 }
 
 impl<'a> Run<'a> {
-    /// A run on the built-in objects under the paper's degree and the given convention.
+    /// A run on the built-in objects with the paper's degree and the given convention.
     pub fn builtin(
         scale: Scale,
         seed: u64,
@@ -88,7 +88,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// The purpose of random numbers; no two purposes share any.
+/// Purpose of random numbers; every purpose has its own streams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// Hand poses around an object.
@@ -99,20 +99,20 @@ pub enum Purpose {
     Halves = 3,
     /// Noise on coefficients, and contacts.
     Noise = 4,
-    /// The same, in pictures.
+    /// Noise and contacts of samples in figures.
     Drawn = 5,
     /// Which transfers are measured against scattered starts, and those starts.
     Starts = 6,
 }
 
-/// The stream of a seed that one purpose uses for the object (or sphere) of a number.
+/// The stream of the seed for one purpose and the object (or sphere) of this number.
 ///
-/// Streams of the catalogue's scans are below 2³², those of purposes above.
+/// The catalogue's scans use streams below 2³²; those of purposes are above.
 pub fn stream(purpose: Purpose, number: usize) -> u64 {
     ((purpose as u64) << 32) | number as u64
 }
 
-/// The generator of one purpose for the object (or sphere) of a number.
+/// The generator for one purpose and the object (or sphere) of this number.
 pub fn generator(seed: u64, purpose: Purpose, number: usize) -> ChaCha8Rng {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(stream(purpose, number));

@@ -1,8 +1,8 @@
 //! The sections of the paper.
 //!
-//! Every section has three parts: findings (the data), a measurement that computes them, and figures
-//! that are drawn from them. Its `run` calls the measurement and the figures and puts the results
-//! together.
+//! Every section has three parts: findings (the data), a measurement that computes them, and
+//! figures that show them. Its `run` calls the measurement and the figures and assembles the
+//! results.
 
 pub mod eigenfunctions;
 pub mod gradient_ascent;

@@ -51,8 +51,7 @@ pub fn share(part: usize, whole: usize) -> Option<f64> {
     (whole > 0).then(|| part as f64 / whole as f64)
 }
 
-/// Spearman's rank correlation, with ties at their mean rank; `None` where a list is constant or
-/// empty.
+/// Spearman's rank correlation, with mean ranks for ties; `None` if a list is constant or empty.
 ///
 /// ```
 /// use experiments::statistics::rank_correlation;
@@ -111,7 +110,7 @@ mod tests {
         let turned = rank_correlation(&a, &[4.0, 3.0, 2.0, 1.0]).unwrap();
         assert!((same - 1.0).abs() <= 1e-15 && (turned + 1.0).abs() <= 1e-15);
         assert_eq!(rank_correlation(&a, &[1.0; 4]), None);
-        // By hand: ranks (0,1,2,3) against (0.5,0.5,2,3) correlate with √0.9.
+        // Computed by hand: ranks (0,1,2,3) and (0.5,0.5,2,3) have correlation √0.9.
         let tied = rank_correlation(&a, &[1.0, 1.0, 2.0, 3.0]).unwrap();
         assert!((tied - 0.9_f64.sqrt()).abs() <= 1e-15);
     }

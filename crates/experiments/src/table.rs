@@ -2,14 +2,14 @@
 
 use std::fmt;
 
-/// A table with lines of text below, for a terminal and for a page.
+/// A table with notes below, for a terminal and for a page.
 ///
-/// On a terminal the first column stands to the left, the others to the right.
+/// On a terminal the first column is aligned to the left, the others to the right.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     /// Title, headers and rows.
     pub cells: report::Table,
-    /// Lines below.
+    /// Lines of text below the table.
     pub notes: Vec<String>,
 }
 

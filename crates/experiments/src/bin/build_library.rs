@@ -30,7 +30,7 @@ fn main() -> ExitCode {
     let args = Args::parse();
     match execute(&args) {
         Ok(text) => {
-            // A reader that has gone away is no failure of the build.
+            // A closed pipe is not a failure of the build.
             let _ = writeln!(std::io::stdout(), "{text}");
             ExitCode::SUCCESS
         }

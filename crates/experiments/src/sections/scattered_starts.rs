@@ -1,7 +1,7 @@
 //! Beyond Sec. IV-E: our transfer against the best of many runs of the paper's ascent on the target.
 //!
-//! The paper's ascent (Sec. IV-D) can be started many times around the naive transfer, and the best
-//! end kept. This is expensive, and tells whether a transfer got stuck below what can be reached.
+//! The paper's ascent (Sec. IV-D) is run many times from starts around the naive transfer, and the
+//! best end is kept. This is expensive, and shows whether a transfer ended below what is reachable.
 
 mod figure;
 mod findings;

@@ -1,4 +1,4 @@
-//! Fig. 4 and Sec. IV-A: the space of shapes, with spheres and deformations in it.
+//! Fig. 4 and Sec. IV-A: the space of shapes with spheres and deformations.
 
 mod figure;
 mod findings;

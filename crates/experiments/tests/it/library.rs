@@ -1,4 +1,4 @@
-//! The stored library is what building it gives.
+//! Building the library reproduces the stored one.
 
 use experiments::library::{LibrarySettings, build};
 use grasp::Convention;
@@ -7,7 +7,7 @@ use record::{LibraryEntry, LibraryRecord};
 
 const STORED: &[u8] = fixtures::LIBRARY;
 
-/// Last digits differ between processors: other vector units sum in another order.
+/// Relative tolerance: the last digits depend on the order in which a processor's vector unit adds.
 const RELATIVE: f64 = 1e-6;
 
 /// Each number to 1e-6 of the largest of its list.

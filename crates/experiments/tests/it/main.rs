@@ -1,4 +1,4 @@
-//! The tests of `experiments` that use it from outside, as one program.
+//! The integration tests of `experiments`, as one program.
 
 mod library;
 mod program;

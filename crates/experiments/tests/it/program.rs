@@ -1,4 +1,4 @@
-//! What the programs write: keys of the JSON, refused objects, nothing half done.
+//! The files of the programs: keys of the JSON, refused objects, and no partial files.
 
 use std::path::Path;
 

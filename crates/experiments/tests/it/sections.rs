@@ -1,4 +1,4 @@
-//! Every section on a tiny configuration: the same numbers on any number of threads.
+//! Every section with tiny settings gives the same numbers on any number of threads.
 
 use experiments::objects::{ObjectSource, Objects};
 use experiments::pipeline::{FittedSet, best_grasps, fit_all};
@@ -141,7 +141,7 @@ fn every_pose_is_counted_once_and_grasps_are_ranked() {
         assert_eq!(o.stable_by_preshape.iter().sum::<usize>(), o.stable);
         let own = o.conventions.iter().find(|c| c.name == "paper").unwrap();
         assert_eq!(own.share_closed, Some(1.0), "{}", o.id);
-        // The stable grasps are ranked by this very convention.
+        // The stable grasps are ranked under this convention.
         assert!((own.rank_correlation.unwrap() - 1.0).abs() <= 1e-12);
     }
 }
@@ -183,7 +183,7 @@ fn errors_fall_with_the_degree_and_spheres_are_a_line() {
     // line is 106 mm long.
     assert!(line.bend <= 0.06, "{}", line.bend);
     assert_eq!(line.objects_by_distance[0].0, "S11");
-    // The only way of the paper that the three objects have is S5 to S11.
+    // S5 to S11 is the only deformation of the paper between two of the three objects.
     assert_eq!(space.passings.len(), 1);
     assert_eq!(space.passings[0].id, "S8");
     assert!((0.0..=1.0).contains(&space.passings[0].t));

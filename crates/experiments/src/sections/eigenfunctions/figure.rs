@@ -8,7 +8,7 @@ use super::findings::Eigenfunctions;
 use crate::drawing::{coloured, section};
 use crate::table::Table;
 
-/// Functions up to this degree are drawn.
+/// Highest degree of the functions that are drawn.
 const DRAWN_DEGREE: usize = 3;
 
 /// The first eigenfunctions, and the errors by degree.

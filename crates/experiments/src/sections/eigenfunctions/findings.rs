@@ -5,12 +5,12 @@ use serde::Serialize;
 use crate::paper;
 use crate::run::Run;
 
-/// How much is computed.
+/// Amount of computation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// All Y_{l,m} up to this degree are tested.
+    /// Highest degree of the tested Y_{l,m}.
     pub degree: usize,
-    /// Directions at which they are evaluated, besides the poles.
+    /// Number of directions at which they are evaluated, besides the poles.
     pub directions: usize,
 }
 
@@ -38,7 +38,7 @@ pub struct Eigenfunctions {
     /// |ΔY + l(l+1) Y| over l(l+1) √((2l+1)/4π), ΔY the trace of the Hessian.
     pub laplacian_error: f64,
     /// The same with ΔY from differences of the paper's formula along great circles, which have an
-    /// error of their own of about 1e-10.
+    /// error of about 1e-10.
     pub difference_laplacian_error: f64,
     /// Errors of the Laplacian by degree, from the Hessian.
     pub laplacian_error_by_degree: Vec<f64>,

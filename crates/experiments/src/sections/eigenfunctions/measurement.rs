@@ -57,7 +57,7 @@ fn orthonormality_error(basis: &Basis) -> f64 {
     (products - DMatrix::identity(basis.len(), basis.len())).amax()
 }
 
-/// √((2l+1)/4π): no Y_{l,m} is larger anywhere.
+/// √((2l+1)/4π), the largest value of any Y_{l,m}.
 fn largest_value(l: usize) -> f64 {
     ((2 * l + 1) as f64 / (4.0 * std::f64::consts::PI)).sqrt()
 }
@@ -127,8 +127,8 @@ fn difference_error(l: usize, directions: &[Direction]) -> f64 {
 
 /// Y_{l,m} as Sec. II-C writes it: c_{l,m}, P_l^{|m|}(cos θ) without phase, sin or cos of |m|φ.
 ///
-/// This is a reference for tests: factorials and unnormalised Legendre polynomials overflow beyond
-/// about l = 80.
+/// A reference for tests: factorials and unnormalised Legendre polynomials overflow beyond about l
+/// = 80.
 pub fn paper_formula(l: usize, m: isize, p: &Direction) -> f64 {
     let SphericalCoords { theta, phi } = SphericalCoords::from_direction(p);
     let order = m.unsigned_abs();

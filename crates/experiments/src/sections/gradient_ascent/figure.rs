@@ -117,7 +117,7 @@ pub(super) fn figures(found: &[ObjectClimbs], drawn: &[DrawnClimb]) -> Vec<Secti
         section("Quality", "", vec![Block::Chart(chart)]),
         section(
             "Contacts",
-            "Arrows press where the contacts end; lines show the way that they came.",
+            "Arrows show the contacts at the end; lines show their paths.",
             vec![Block::SceneGrid(grid)],
         ),
     ]

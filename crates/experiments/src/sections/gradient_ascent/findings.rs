@@ -1,4 +1,4 @@
-//! Where the ascents ended.
+//! The results of the ascents.
 
 use serde::{Deserialize, Serialize};
 use shape::RadialShape;
@@ -9,14 +9,14 @@ use crate::paper;
 use crate::run::Run;
 use crate::statistics::{mean, share};
 
-/// How much is computed.
+/// Amount of computation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Hand poses from which G_i is taken.
+    /// Number of hand poses from which G_i is selected.
     pub poses: usize,
-    /// Grasps of G_i from which the ascents start.
+    /// Number of grasps of G_i from which ascents start.
     pub grasps: usize,
-    /// The ascent.
+    /// The paper's ascent.
     pub ascent: PaperAscent,
 }
 
@@ -31,7 +31,7 @@ impl Settings {
     }
 }
 
-/// One ascent.
+/// Both ascents from one start.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Climb {
     /// The paper's ascent.
@@ -41,7 +41,7 @@ pub struct Climb {
     pub ours: OurClimb,
 }
 
-/// Where the paper's ascent ended.
+/// The result of the paper's ascent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PaperClimb {
     /// Q at the start.
@@ -50,20 +50,20 @@ pub struct PaperClimb {
     pub last: f64,
     /// The largest Q of all states.
     pub highest: f64,
-    /// Quality evaluations.
+    /// Number of qualities computed.
     pub evaluations: usize,
-    /// Largest angle between where a contact began and where it ended, radians.
+    /// Largest angle between the start and the end of a contact, radians.
     pub moved_rad: f64,
 }
 
-/// Where our ascent ended.
+/// The result of our ascent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OurClimb {
     /// Q at the end.
     pub last: f64,
-    /// Quality evaluations.
+    /// Number of qualities computed.
     pub evaluations: usize,
-    /// Slope of Q left at the end, per radian.
+    /// Slope of Q that remains at the end, per radian.
     pub stationarity: f64,
 }
 
@@ -76,14 +76,14 @@ pub struct ObjectClimbs {
     pub climbs: Vec<Climb>,
 }
 
-/// Numbers over all ascents.
+/// Summary of all ascents.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Overall {
-    /// Ascents.
+    /// Number of ascents.
     pub climbs: usize,
-    /// Share that ended higher than they began.
+    /// Share of the paper's ascents with a higher Q at the end.
     pub share_improved: Option<f64>,
-    /// Share that ended lower.
+    /// Share with a lower Q at the end.
     pub share_worsened: Option<f64>,
     /// Mean of Q at the starts.
     pub mean_initial: Option<f64>,
@@ -91,21 +91,21 @@ pub struct Overall {
     pub mean_final: Option<f64>,
     /// Mean change of Q.
     pub mean_change: Option<f64>,
-    /// Mean of Q lost between the highest state and the end, by the fixed step length.
+    /// Mean decrease of Q from the highest state to the end, due to the fixed step length.
     pub mean_lost_from_highest: Option<f64>,
-    /// Our ascent from the same starts: share that ended higher.
+    /// Share of our ascents from the same starts with a higher Q at the end.
     pub ours_share_improved: Option<f64>,
-    /// Ours that ended lower than they began.
+    /// Number of our ascents with a lower Q at the end.
     pub ours_below_start: usize,
-    /// Ours: mean of Q at the ends.
+    /// Mean of Q at the ends of our ascents.
     pub ours_mean_final: Option<f64>,
-    /// Largest slope of Q left at an end of ours, per radian.
+    /// Largest remaining slope of Q at an end of our ascents, per radian.
     pub ours_largest_stationarity: f64,
-    /// Quality evaluations of the paper's ascent per evaluation of ours.
+    /// Number of qualities of the paper's ascent divided by that of ours.
     pub evaluations_ratio: Option<f64>,
 }
 
-/// Numbers over all ascents.
+/// Summarises all ascents.
 pub fn overall(climbs: &[Climb]) -> Overall {
     let mean_of = |pick: fn(&Climb) -> f64| mean(&climbs.iter().map(pick).collect::<Vec<_>>());
     let share_of =
@@ -134,7 +134,7 @@ pub fn overall(climbs: &[Climb]) -> Overall {
     }
 }
 
-/// The four largest improvements, to be compared with those of Fig. 8.
+/// The four largest improvements, for comparison with Fig. 8.
 pub(super) fn examples(climbs: &[Climb]) -> Vec<(f64, f64)> {
     let mut sorted: Vec<&Climb> = climbs.iter().collect();
     let gain = |c: &Climb| c.paper.last - c.paper.initial;
@@ -146,7 +146,7 @@ pub(super) fn examples(climbs: &[Climb]) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// One ascent with its states, to be drawn.
+/// One ascent with its states, for a figure.
 pub struct DrawnClimb {
     /// The object and the change of quality.
     pub label: String,

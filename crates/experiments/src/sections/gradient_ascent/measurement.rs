@@ -11,10 +11,10 @@ use crate::paper;
 use crate::pipeline::{FittedScan, FittedSet, directions};
 use crate::run::Run;
 
-/// Ascents from given grasps of every object: all ascents of the paper, then all of ours.
+/// Runs ascents from the given grasps of every object: first all of the paper's, then all of ours.
 ///
 /// # Errors
-/// A quality cannot be computed, or finished ascents cannot be kept.
+/// A quality cannot be computed, or completed ascents cannot be stored.
 pub fn measure(
     run: &Run,
     settings: &Settings,
@@ -101,7 +101,7 @@ fn climb(run: &Run, fitted: &FittedScan, start: &[Direction]) -> Result<OurClimb
     })
 }
 
-/// The ascents to be drawn: the largest improvements on four objects, and the smallest of all.
+/// The ascents for the figure: the largest improvements on four objects, and the smallest of all.
 pub(super) fn drawn(
     run: &Run,
     settings: &Settings,

@@ -1,4 +1,4 @@
-//! The best hand grasps, the outcomes of the poses, and the qualities.
+//! The best hand grasps, the outcomes of the poses, and the distribution of quality.
 
 use grasp::Convention;
 use report::{BarSeries, Bars, Block, Histogram, Sample, SceneGrid, Section};
@@ -13,7 +13,7 @@ pub(super) fn table(ours: &[ObjectGrasps], conventions: &[Convention]) -> Table 
     let poses = ours.first().map_or(0, |o| o.poses);
     let mut table = Table::new(
         format!(
-            "Sec. IV-C: {poses} hand poses a surface; then the mean quality of the stable grasps under each convention"
+            "Sec. IV-C: {poses} hand poses per surface; then the mean quality of the stable grasps under each convention"
         ),
         &[
             "object", "stable", "of 1400", "unstable", "rejected", "best", "10th", "50th",
@@ -72,7 +72,7 @@ fn rank_note(ours: &[ObjectGrasps], name: &str) -> String {
     )
 }
 
-/// The best grasp of each object, outcomes and qualities.
+/// The best grasp of each object, outcomes and distributions of quality.
 pub(super) fn figures(set: &FittedSet, found: &[ObjectGrasps]) -> Vec<Section> {
     let cells = set
         .objects
@@ -131,7 +131,7 @@ fn outcomes(found: &[ObjectGrasps]) -> Bars {
         all.push(series(&reason.replace('_', " "), &count));
     }
     Bars {
-        title: "What became of the poses".to_owned(),
+        title: "Outcomes of the poses".to_owned(),
         x_label: "object".to_owned(),
         y_label: "poses".to_owned(),
         categories: found.iter().map(|o| o.id.clone()).collect(),

@@ -8,10 +8,10 @@ use crate::paper;
 use crate::run::Run;
 use crate::statistics::Summary;
 
-/// How much is computed.
+/// Amount of computation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// Hand poses per surface.
+    /// Number of hand poses per surface.
     pub poses: usize,
 }
 
@@ -29,26 +29,26 @@ impl Settings {
 pub struct ObjectGrasps {
     /// The object.
     pub id: String,
-    /// Poses tried.
+    /// Number of poses.
     pub poses: usize,
-    /// Stable grasps, by the threshold of the convention.
+    /// Number of grasps that exceed the convention's threshold of stability.
     pub stable: usize,
-    /// Grasps that were made and are not stable.
+    /// Number of grasps that do not exceed it.
     pub unstable: usize,
-    /// Rejected poses by reason.
+    /// Number of rejected poses by reason.
     pub rejected: Map<String, Value>,
-    /// Stable grasps scaled to the number of poses of the paper.
+    /// Number of stable grasps, scaled to the paper's number of poses.
     pub stable_of_1400: f64,
-    /// Stable grasps by pre-shape: parallel, spread.
+    /// Number of stable grasps by pre-shape: parallel, spread.
     pub stable_by_preshape: Vec<usize>,
-    /// Qualities of G_i, the best 50, best first.
+    /// Qualities of G_i, the 50 best grasps, in descending order.
     pub best_qualities: Vec<f64>,
     /// Contacts of the best grasp.
     #[serde(skip)]
     pub best_contacts: Option<Vec<Direction>>,
     /// Summary of G_i.
     pub best: Option<Summary>,
-    /// Summary of Ĝ_i, the best 10.
+    /// Summary of Ĝ_i, the 10 best grasps.
     pub very_best: Option<Summary>,
     /// The same grasps under every convention.
     pub conventions: Vec<UnderConvention>,
@@ -59,9 +59,9 @@ pub struct ObjectGrasps {
 pub struct UnderConvention {
     /// The convention.
     pub name: String,
-    /// Quality of the stable grasps; 0 for a grasp that is not closed.
+    /// Summary of the qualities; a grasp that is not closed counts as 0.
     pub quality: Option<Summary>,
-    /// Share that is closed.
+    /// Share of closed grasps.
     pub share_closed: Option<f64>,
     /// Spearman's rank correlation with the qualities of the run's convention.
     pub rank_correlation: Option<f64>,

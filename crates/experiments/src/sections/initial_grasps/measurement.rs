@@ -1,4 +1,4 @@
-//! Hand poses that are closed on every object.
+//! Synthesis of hand grasps on every object.
 
 use grasp::Convention;
 use hand::OutcomeCounts;
@@ -11,7 +11,7 @@ use crate::pipeline::{FittedScan, FittedSet, synthesize};
 use crate::run::Run;
 use crate::statistics::{rank_correlation, share, summary};
 
-/// Closes the hand on every object.
+/// Closes the hand on every object from random poses.
 pub fn measure(
     run: &Run,
     settings: &Settings,

@@ -1,4 +1,4 @@
-//! How well each surface fits.
+//! The errors of the fitted surfaces.
 
 use serde::Serialize;
 use shape::RadialShape;
@@ -6,14 +6,14 @@ use shape::RadialShape;
 use crate::paper;
 use crate::run::Run;
 
-/// How much is computed.
+/// Amount of computation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// Numbers of the objects; all when absent.
+    /// Numbers of the objects; `None` for all.
     pub objects: Option<Vec<usize>>,
     /// The degrees L.
     pub degrees: Vec<usize>,
-    /// Directions in which surfaces are compared with the true ones.
+    /// Number of directions in which surfaces are compared with the true ones.
     pub truth_directions: usize,
 }
 
@@ -30,14 +30,14 @@ impl Settings {
     }
 }
 
-/// How well one surface fits its cloud. Lengths in metres.
+/// Errors of one surface. Lengths in metres.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Reconstruction {
     /// The object.
     pub id: String,
-    /// L.
+    /// The degree L.
     pub degree: usize,
-    /// (L+1)².
+    /// The number of coefficients, (L+1)².
     pub coefficients: usize,
     /// λ; 0 for plain least squares, as in the paper.
     pub lambda: f64,
@@ -47,19 +47,19 @@ pub struct Reconstruction {
     pub rms_m: f64,
     /// Largest residual.
     pub max_abs_m: f64,
-    /// Root mean square residual, at one half of the points, of a fit to the other half.
+    /// Root mean square residual of a fit to one half of the points, at the other half.
     pub held_out_rms_m: Option<f64>,
-    /// Root mean square distance of the surface from the true one, where that is known.
+    /// Root mean square distance of the surface from the true one, if that is known.
     pub true_rms_m: Option<f64>,
     /// Whether the surface is proved to be in M^rad.
     pub in_m_rad: bool,
 }
 
-/// A fit with its surface, where that is in M^rad.
+/// A fit with its surface, if that is in M^rad.
 #[derive(Clone, Debug)]
 pub struct Fitted {
-    /// How well it fits.
+    /// Errors of the fit.
     pub record: Reconstruction,
-    /// The surface, seen from the mean of the cloud.
+    /// The surface, in the frame centred at the mean of the cloud.
     pub shape: Option<RadialShape>,
 }

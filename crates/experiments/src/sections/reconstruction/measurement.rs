@@ -16,7 +16,7 @@ use crate::objects::ObjectCloud;
 use crate::run::{Purpose, Run, generator};
 use crate::statistics::root_mean_square;
 
-/// All fits of all objects, plain and penalised.
+/// Computes all fits of all objects, plain and penalised.
 pub fn measure(
     run: &Run,
     settings: &Settings,
@@ -63,7 +63,7 @@ fn fits_at(
     let half = System::new(&seen, degree)?;
     let mut fits = Vec::new();
     for penalised in [false, true] {
-        // Too few points determine nothing without a penalty; that fit is left out.
+        // Without a penalty too few points do not determine β; that fit is omitted.
         let Some((beta, lambda)) = whole.solve(penalised)? else {
             continue;
         };
@@ -90,7 +90,7 @@ fn fits_at(
     Ok(fits)
 }
 
-/// The normal equations of a cloud at one degree, with their samples.
+/// The normal equations of a cloud at one degree, and the samples.
 struct System<'a> {
     samples: Samples<'a>,
     gram: Gram,
@@ -108,7 +108,7 @@ impl<'a> System<'a> {
         })
     }
 
-    /// β and λ; `None` where the points do not determine β.
+    /// β and λ; `None` if the points do not determine β.
     fn solve(&self, penalised: bool) -> Result<Option<(Coefficients, f64)>, RegressionError> {
         let penalty = if penalised {
             self.gram.choose_penalty(PENALTY_POWER)?
@@ -134,7 +134,7 @@ fn residuals(beta: &Coefficients, samples: &RadialSamples) -> Vec<f64> {
         .collect()
 }
 
-/// Distance of a fitted surface from the true one, over directions even on the sphere.
+/// Distances of a fitted surface from the true one, over directions spread evenly on the sphere.
 fn true_distance(
     object: &ObjectCloud,
     shape: &RadialShape,

@@ -1,4 +1,4 @@
-//! What noise on a band of coefficients does.
+//! The effect of noise on a band of coefficients.
 
 use serde::Serialize;
 use shape::RadialShape;
@@ -6,10 +6,10 @@ use space::ModuliPoint;
 
 use crate::run::Run;
 
-/// How much is computed.
+/// Amount of computation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Samples of each object, band and deviation.
+    /// Number of samples of each object, band and standard deviation.
     pub samples: usize,
     /// Standard deviations on the coarse band, metres.
     pub coarse_sigmas: Vec<f64>,
@@ -20,8 +20,8 @@ pub struct Settings {
 impl Settings {
     /// The settings of a run.
     ///
-    /// The paper states no deviation. These change the radius by 2 to 18 mm (coarse) and 1 to 11 mm
-    /// (fine) in the root mean square, from barely visible to beyond what its pictures show.
+    /// The paper states no standard deviation. These change the radius by 2 to 18 mm (coarse) and 1
+    /// to 11 mm (fine) in the root mean square: from barely visible to more than its figures show.
     pub fn of(run: &Run) -> Self {
         Self {
             samples: run.scale.pick(4, 100),
@@ -35,7 +35,7 @@ impl Settings {
     }
 }
 
-/// What noise of one deviation on one band does, over all objects.
+/// The effect of noise of one standard deviation on one band, over all objects.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Noise {
     /// "coarse" or "fine".
@@ -44,15 +44,16 @@ pub struct Noise {
     pub positions: (usize, usize),
     /// Standard deviation on each coefficient, metres.
     pub sigma_m: f64,
-    /// Samples drawn.
+    /// Number of samples.
     pub samples: usize,
-    /// Samples proved to be in M^rad.
+    /// Number of samples proved to be in M^rad.
     pub in_m_rad: usize,
-    /// Their share.
+    /// Share of samples proved to be in M^rad.
     pub share_in_m_rad: Option<f64>,
     /// Mean of the root mean square change of the radius over the sphere, ‖δβ‖/√(4π), metres.
     pub rms_radius_change_m: Option<f64>,
-    /// Mean of √(Σ l(l+1) δβ²)/‖δβ‖: how many waves the change has around the sphere, over 2π.
+    /// Mean of √(Σ l(l+1) δβ²)/‖δβ‖, approximately the number of waves of the change around the
+    /// sphere.
     pub roughness: Option<f64>,
     /// Mean of the root mean square slope of the change, √(Σ l(l+1) δβ²/4π) over the mean radius.
     pub rms_slope_change: Option<f64>,
@@ -60,9 +61,9 @@ pub struct Noise {
     pub share_force_closed: Option<f64>,
 }
 
-/// Samples of one band, to be drawn.
+/// Samples of one band, for a figure.
 pub struct DrawnBand {
-    /// Which coefficients, and the deviation.
+    /// The band and the standard deviation.
     pub title: String,
     /// The samples.
     pub samples: Vec<ModuliPoint<RadialShape>>,

@@ -13,10 +13,10 @@ use crate::pipeline::{FittedScan, FittedSet};
 use crate::run::{Purpose, Run, generator};
 use crate::statistics::{mean, share};
 
-/// Samples drawn of each band.
+/// Number of samples drawn in the figure for each band.
 const DRAWN: usize = 4;
 
-/// One sample: how it differs, and what it is.
+/// One sample: its change, and whether it is valid and closed.
 struct Sample {
     in_m_rad: bool,
     force_closed: bool,
@@ -25,7 +25,7 @@ struct Sample {
     slope: f64,
 }
 
-/// Draws all samples.
+/// Computes all samples.
 pub fn measure(
     run: &Run,
     settings: &Settings,
@@ -64,7 +64,7 @@ fn draw(
 ) -> Result<Sample, ExperimentError> {
     let shape = object.shape();
     let mut rng = generator(run.seed, Purpose::Noise, stream);
-    // The same numbers once more, to see the change of samples that leave M^rad too.
+    // Draw the same noise again, to measure the change of samples outside M^rad as well.
     let beta = shape.coefficients();
     let noisy = shape::noise::perturb_band(beta, band.clone(), sigma, &mut rng.clone());
     let change = Coefficients::combination([(1.0, &noisy), (-1.0, beta)]);
@@ -118,8 +118,8 @@ fn collect(name: &'static str, band: &Range<usize>, sigma: f64, samples: &[Sampl
     }
 }
 
-/// Samples to be drawn: one object, at the least deviation of each band. Samples outside M^rad are
-/// left out.
+/// Samples for the figure: one object, at the smallest standard deviation of each band. Samples
+/// outside M^rad are omitted.
 pub(super) fn drawn_bands(run: &Run, settings: &Settings, set: &FittedSet) -> Vec<DrawnBand> {
     let Some(object) = set.get(paper::DEFORMED_FROM).or(set.objects.last()) else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! The best of many runs against our transfer.
+//! The best of many ascents against our transfer.
 
 use report::{Axis, Block, Chart, Section, Series};
 
@@ -42,7 +42,7 @@ pub(super) fn table(
     table
 }
 
-/// One point per transfer. Above the diagonal our transfer reaches more.
+/// One point per transfer; above the diagonal our transfer is better.
 pub(super) fn figures(compared: &[Compared]) -> Vec<Section> {
     let series = |name: &str, pick: fn(&Compared) -> f64| {
         let points = compared.iter().map(|c| [c.runs.best(), pick(c)]).collect();

@@ -1,4 +1,4 @@
-//! The qualities that both schemes reach.
+//! The qualities of both schemes.
 
 use serde::{Deserialize, Serialize};
 use space::PaperAscent;
@@ -7,23 +7,23 @@ use crate::paper;
 use crate::run::Run;
 use crate::statistics::share;
 
-/// Standard deviation of a contact's scatter, radians in both tangent coordinates.
+/// Standard deviation of the scatter of a contact, radians, in both tangent coordinates.
 pub(super) const SPREAD: f64 = 0.3;
-/// Differences of Q that are told apart in the result.
+/// Margins of Q for which shares are reported.
 const MARGINS: [f64; 3] = [0.0, 1e-3, 1e-2];
 
-/// How much is computed.
+/// Amount of computation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Numbers of the objects; all when absent.
+    /// Numbers of the objects; `None` for all.
     pub objects: Option<Vec<usize>>,
-    /// Hand poses from which Ĝ_i is taken.
+    /// Number of hand poses from which Ĝ_i is selected.
     pub poses: usize,
-    /// Grasps of Ĝ_i that may be drawn.
+    /// Number of grasps of Ĝ_i from which the sample is drawn.
     pub grasps: usize,
-    /// Transfers that are drawn.
+    /// Number of transfers in the sample.
     pub sample: usize,
-    /// Runs of the paper's ascent for each.
+    /// Number of runs of the paper's ascent per transfer.
     pub runs: usize,
     /// The paper's ascent.
     pub ascent: PaperAscent,
@@ -43,23 +43,23 @@ impl Settings {
     }
 }
 
-/// One transfer, and what the runs reach.
+/// One transfer and the ends of the runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Compared {
     /// Id of the source.
     pub from: String,
     /// Id of the target.
     pub to: String,
-    /// Its rank among the grasps of its source, from 0.
+    /// Rank of the grasp among those of its source, from 0.
     pub rank: usize,
     /// The runs of the paper's ascent.
     #[serde(flatten)]
     pub runs: Runs,
-    /// Our transfer with its defaults.
+    /// Q of our transfer with default settings.
     pub ours: f64,
-    /// Our transfer when asked to be thorough.
+    /// Q of our transfer with thorough settings.
     pub thorough: f64,
-    /// Quality evaluations of the thorough transfer.
+    /// Number of qualities computed by the thorough transfer.
     pub thorough_evaluations: usize,
 }
 
@@ -68,25 +68,25 @@ pub struct Compared {
 pub struct Runs {
     /// Q at every end.
     pub ends: Vec<f64>,
-    /// Quality evaluations of all runs.
+    /// Number of qualities computed by all runs.
     pub evaluations: usize,
 }
 
 impl Runs {
-    /// The greatest Q of all ends.
+    /// The largest Q of all ends.
     pub fn best(&self) -> f64 {
         self.ends.iter().copied().fold(0.0, f64::max)
     }
 }
 
-/// Which share of ours is at least the best run less a margin.
+/// Share of our transfers that reach the best run's Q less a margin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct AtLeast {
     /// The margin of Q.
     pub margin: f64,
-    /// Of the default transfer.
+    /// Share of the default transfers.
     pub ours: Option<f64>,
-    /// Of the thorough transfer.
+    /// Share of the thorough transfers.
     pub thorough: Option<f64>,
 }
 

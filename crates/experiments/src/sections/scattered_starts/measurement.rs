@@ -1,4 +1,4 @@
-//! A sample of transfers, done by both schemes.
+//! A sample of transfers, computed by both schemes.
 
 use moduli::Grasp;
 use rand::seq::index;
@@ -21,10 +21,10 @@ struct Ours {
     thorough_evaluations: usize,
 }
 
-/// Draws a sample of transfers and does each by both schemes.
+/// Draws a sample of transfers and computes each by both schemes.
 ///
 /// # Errors
-/// A transfer or an ascent fails, or finished results cannot be kept.
+/// A transfer or an ascent fails, or completed results cannot be stored.
 pub fn measure(
     run: &Run,
     settings: &Settings,

@@ -1,4 +1,4 @@
-//! Fig. 4: the surfaces, and the space that they live in.
+//! Fig. 4: the surfaces and the shape space.
 
 use report::{
     Axis, Block, Chart, Item, Lines, Mark, Points, Scene, SceneCell, SceneGrid, Section, Series,
@@ -54,7 +54,7 @@ pub(super) fn table(ours: &ShapeSpace) -> Table {
     table
 }
 
-/// The surfaces, and the scaling in two and three dimensions.
+/// The surfaces, and the classical scaling in two and three dimensions.
 pub(super) fn figures(set: &FittedSet, found: &ShapeSpace) -> Vec<Section> {
     vec![
         section(
@@ -91,12 +91,12 @@ fn grid(set: &FittedSet) -> SceneGrid {
     }
 }
 
-/// Places of one kind, and their labels.
+/// The points of one kind, and their labels.
 fn of_kind<'a>(found: &'a ShapeSpace, kind: &'a str) -> impl Iterator<Item = &'a Place> {
     found.places.iter().filter(move |p| p.kind == kind)
 }
 
-/// Deformations: a name, and the places on it with the ends.
+/// Deformations: the name, and the points from end to end.
 fn ways(found: &ShapeSpace) -> Vec<(String, Vec<&Place>)> {
     let mut ways: Vec<(String, Vec<&Place>)> = Vec::new();
     for place in of_kind(found, "deformation") {

@@ -5,14 +5,14 @@ use serde::Serialize;
 use crate::paper;
 use crate::run::Run;
 
-/// How much is computed.
+/// Amount of computation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// Number of spheres.
     pub spheres: usize,
-    /// Points of each sphere's cloud.
+    /// Number of points of each sphere's cloud.
     pub sphere_points: usize,
-    /// Equal steps of a deformation.
+    /// Number of equal steps of a deformation.
     pub deformation_steps: usize,
 }
 
@@ -27,18 +27,18 @@ impl Settings {
     }
 }
 
-/// One point of the shape space with its place in the pictures.
+/// One point of the shape space with its coordinates in the figures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Place {
-    /// What it is: an object's id, "sphere 30.0 mm", "S5→S1 at 0.10".
+    /// Label: an object's id, "sphere 30.0 mm", "S5→S1 at 0.10".
     pub label: String,
     /// "object", "sphere" or "deformation".
     pub kind: &'static str,
-    /// Coordinates of the three-dimensional scaling, metres; the first two are the plane's.
+    /// Coordinates of the three-dimensional scaling, metres; the first two are those of the plane.
     pub coordinates: Vec<f64>,
 }
 
-/// How near a shape is to the straight line between two others in the shape space.
+/// Distance of a shape from the straight line between two others in the shape space.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Passing {
     /// The shape.
@@ -51,20 +51,22 @@ pub struct Passing {
     pub t: f64,
     /// Distance from that point, metres.
     pub distance_m: f64,
-    /// That distance over the distance from the nearer end.
+    /// That distance divided by the distance from the nearer end.
     pub distance_over_nearer_end: f64,
-    /// Whether that point is nearer to this shape than to any other object, the ends included.
+    /// Whether no other object, including the ends, is nearer to that point.
     pub nearest_object_there: bool,
 }
 
-/// How the spheres lie in the shape space.
+/// The sequence of spheres in the shape space.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SphereLine {
     /// Radii, metres.
     pub radii_m: Vec<f64>,
-    /// Largest distance of a sphere from the line through the first and the last, over its length.
+    /// Largest distance of a sphere from the line through the first and the last, divided by its
+    /// length.
     pub bend: f64,
-    /// Objects by distance from the line, nearest first: id, distance (m), radius of the sphere there (m).
+    /// Objects in order of their distance from the line: id, distance (m), radius of the sphere
+    /// there (m).
     pub objects_by_distance: Vec<(String, f64, f64)>,
 }
 
@@ -75,11 +77,11 @@ pub struct ShapeSpace {
     pub ids: Vec<String>,
     /// d(f_i, f_j) = ‖β_i − β_j‖, metres.
     pub distances_m: Vec<Vec<f64>>,
-    /// How near S7 and S8 are to the four deformations.
+    /// Distances of S7 and S8 from the four deformations.
     pub passings: Vec<Passing>,
     /// The spheres.
     pub spheres: Option<SphereLine>,
-    /// Share of the squared distances that two and three dimensions keep.
+    /// Share of the squared distances that two and three dimensions reproduce.
     pub explained: [f64; 2],
     /// All points with their coordinates.
     pub places: Vec<Place>,

@@ -12,7 +12,7 @@ use crate::paper;
 use crate::pipeline::{FittedScan, FittedSet};
 use crate::run::{Purpose, Run, generator};
 
-/// Builds the space and measures it.
+/// Computes the shape space and its findings.
 pub fn measure(
     run: &Run,
     settings: &Settings,
@@ -77,7 +77,7 @@ fn fit_spheres(run: &Run, settings: &Settings) -> Result<Vec<(f64, RadialShape)>
         .collect()
 }
 
-/// The ends of the paper's deformations that exist in the set.
+/// The ends of those of the paper's deformations that exist in the set.
 fn ways(set: &FittedSet) -> Vec<(&FittedScan, &FittedScan)> {
     let Some(from) = set.get(paper::DEFORMED_FROM) else {
         return Vec::new();
@@ -107,14 +107,14 @@ fn distances(shapes: &[&RadialShape]) -> Vec<Vec<f64>> {
     shapes.par_iter().map(row).collect()
 }
 
-/// Share of Σ|eigenvalue| in the first few dimensions.
+/// Share of Σ|eigenvalue| of the first dimensions.
 fn explained(embedding: &Embedding, dimensions: usize) -> f64 {
     let sum = |values: &[f64]| values.iter().map(|v| v.abs()).sum::<f64>();
     let all = &embedding.eigenvalues;
     sum(&all[..dimensions.min(all.len())]) / sum(all)
 }
 
-/// Parameter at which the line through two coefficient vectors is nearest to a third.
+/// Parameter of the point of the line through two coefficient vectors that is nearest to a third.
 fn foot(beta: &Coefficients, from: &Coefficients, to: &Coefficients) -> f64 {
     let along = Coefficients::combination([(1.0, to), (-1.0, from)]);
     let towards = Coefficients::combination([(1.0, beta), (-1.0, from)]);

@@ -1,4 +1,4 @@
-//! Fig. 9: quality before and after transfers, and one grasp on its way.
+//! Fig. 9: quality before and after transfers, and the stations of one transfer.
 
 use report::{Axis, BarSeries, Bars, Block, Chart, SceneCell, SceneGrid, Section, Series};
 use shape::RadialShape;
@@ -66,14 +66,14 @@ pub(super) fn table(settings: &Settings, counts: &[Count], times: &ThreadSeconds
     ));
     table.note("evaluations: qualities that the paper's transfer computes for one of ours");
     table.note(format!(
-        "The paper carried {} grasps, {} of which ended unstable",
+        "The paper transferred {} grasps, {} of which ended unstable",
         paper::TRANSFERS,
         paper::UNSTABLE_TRANSFERS
     ));
     table
 }
 
-/// Quality before and after, unstable transfers by source, one transfer.
+/// Quality before and after, unstable transfers by source, and one transfer.
 pub(super) fn figures(
     carried: &[Carried],
     counts: &[Count],

@@ -1,4 +1,4 @@
-//! Where the transfers ended.
+//! The results of the transfers.
 
 use serde::{Deserialize, Serialize};
 use shape::RadialShape;
@@ -8,16 +8,16 @@ use sph::Direction;
 use crate::paper;
 use crate::run::Run;
 
-/// How much is computed.
+/// Amount of computation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Numbers of the objects; all when absent.
+    /// Numbers of the objects; `None` for all.
     pub objects: Option<Vec<usize>>,
-    /// Hand poses from which Ĝ_i is taken.
+    /// Number of hand poses from which Ĝ_i is selected.
     pub poses: usize,
-    /// Grasps of Ĝ_i that are transferred.
+    /// Number of grasps of Ĝ_i that are transferred.
     pub grasps: usize,
-    /// The transfer.
+    /// The paper's transfer.
     pub transfer: PaperTransfer,
 }
 
@@ -25,7 +25,7 @@ impl Settings {
     /// The settings of a run.
     pub fn of(run: &Run) -> Self {
         Self {
-            // Two objects from which the paper reports unstable transfers, and a round one.
+            // Two objects for which the paper reports unstable transfers, and a round one.
             objects: run.scale.pick(Some(vec![2, 9, 11]), None),
             poses: run.scale.pick(150, paper::HAND_POSES),
             grasps: run.scale.pick(2, paper::VERY_BEST_GRASPS),
@@ -44,67 +44,67 @@ pub struct Carried {
     pub from: String,
     /// Id of the target.
     pub to: String,
-    /// Its rank among the grasps of its source, from 0.
+    /// Rank of the grasp among those of its source, from 0.
     pub rank: usize,
     /// The paper's transfer.
     #[serde(flatten)]
     pub paper: PaperCarried,
-    /// Ours.
+    /// Our transfer.
     pub ours: OurCarried,
 }
 
-/// Where the paper's transfer ended.
+/// The result of the paper's transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PaperCarried {
     /// Q on the source.
     pub initial: f64,
     /// Q on the target.
     pub last: f64,
-    /// Q on the target with θ and φ kept.
+    /// Q on the target after the naive transfer, which keeps θ and φ.
     pub naive: f64,
-    /// Quality evaluations.
+    /// Number of qualities computed.
     pub evaluations: usize,
 }
 
-/// Where our transfer ended.
+/// The result of our transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OurCarried {
     /// Q on the target.
     pub last: f64,
-    /// Quality evaluations.
+    /// Number of qualities computed.
     pub evaluations: usize,
-    /// Slope of Q left on the target, per radian.
+    /// Slope of Q that remains on the target, per radian.
     pub stationarity: Option<f64>,
 }
 
-/// Numbers over the transfers from one source, or over all.
+/// Summary of the transfers from one source, or of all.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Count {
-    /// The source; "all" for the sum.
+    /// The source; "all" for the total.
     pub from: String,
-    /// Transfers.
+    /// Number of transfers.
     pub transfers: usize,
-    /// Grasps that are not stable after the paper's transfer, by the threshold of the convention.
+    /// Number of grasps below the convention's threshold after the paper's transfer.
     pub unstable: usize,
-    /// Grasps that are not stable after the naive transfer.
+    /// The same after the naive transfer.
     pub unstable_naive: usize,
-    /// The paper's count at full scale; `None` for objects that are not in the paper.
+    /// The paper's number at full scale; `None` for objects that are not in the paper.
     pub unstable_in_paper: Option<usize>,
     /// Mean of Q on the source.
     pub mean_initial: Option<f64>,
-    /// Mean of Q on the target.
+    /// Mean of Q on the target after the paper's transfer.
     pub mean_final: Option<f64>,
-    /// Mean of Q on the target, naive.
+    /// The same after the naive transfer.
     pub mean_naive: Option<f64>,
-    /// Grasps that are not stable after our transfer.
+    /// Number of grasps below the threshold after our transfer.
     pub unstable_ours: usize,
-    /// Mean of Q on the target, ours.
+    /// Mean of Q on the target after our transfer.
     pub mean_ours: Option<f64>,
-    /// Quality evaluations of the paper's transfer per evaluation of ours.
+    /// Number of qualities of the paper's transfers divided by that of ours.
     pub evaluations_ratio: Option<f64>,
 }
 
-/// One transfer with its stations, to be drawn.
+/// One transfer with its stations, for a figure.
 pub struct DrawnTransfer {
     /// Source and target.
     pub title: String,

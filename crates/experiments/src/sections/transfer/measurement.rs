@@ -12,11 +12,11 @@ use crate::pipeline::{FittedSet, directions, transfer_between};
 use crate::run::Run;
 use crate::statistics::{mean, share};
 
-/// Transfers the best hand grasps of every object to every other object, by the paper's scheme and
-/// then by ours.
+/// Transfers the best hand grasps of every object to every other object, first by the paper's
+/// scheme and then by ours.
 ///
 /// # Errors
-/// A transfer fails, or finished transfers cannot be kept.
+/// A transfer fails, or completed transfers cannot be stored.
 pub fn measure(
     run: &Run,
     settings: &Settings,
@@ -96,7 +96,8 @@ fn carry(
         .collect()
 }
 
-/// The transfer to be drawn: the best grasp of the first object that has one, to the last object.
+/// The transfer for the figure: the best grasp of the first object that has one, to the last
+/// object.
 pub(super) fn drawn(
     run: &Run,
     settings: &Settings,
@@ -132,7 +133,7 @@ pub(super) fn drawn(
     }))
 }
 
-/// Counts by source, and over all.
+/// Counts by source and in total.
 pub(super) fn counts(run: &Run, set: &FittedSet, carried: &[Carried]) -> Vec<Count> {
     let builtin = set.objects.iter().all(|o| o.scan.truth.is_some());
     let mut counts: Vec<Count> = set
