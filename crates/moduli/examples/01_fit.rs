@@ -1,4 +1,4 @@
-//! Fits a surface to a scan, says how good it is, and stores it.
+//! Fits a surface to a scan, prints how well it fits, and stores it.
 #![allow(clippy::print_stdout, reason = "a program that prints its result")]
 
 use moduli::record::ShapeRecord;

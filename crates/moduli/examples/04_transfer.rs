@@ -1,4 +1,4 @@
-//! Carries grasps from known objects to a new one, and improves one further.
+//! Transfers grasps from known objects to a new one, and improves one of them further.
 #![allow(clippy::print_stdout, reason = "a program that prints its result")]
 
 use moduli::{Convention, FitSettings, Hand, Library, Object, PointCloud, Source};

@@ -1,4 +1,4 @@
-//! Grasps of a hand of your own: a URDF, and a TOML that says how the hand is used.
+//! Grasps of a custom hand, given by a URDF and a TOML that states how the hand is used.
 #![allow(clippy::print_stdout, reason = "a program that prints its result")]
 
 use moduli::{Convention, FitSettings, Hand, Object, PointCloud, Poses};

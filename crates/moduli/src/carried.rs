@@ -1,19 +1,20 @@
-//! Grasps that were carried from a known object, with the hand that held them there.
+//! Grasps transferred from a known object, with the hand that held them there.
 
 use hand::HandState;
 
 use crate::grasp::Grasp;
 
-/// A grasp carried over, and the hand that came along.
+/// A transferred grasp and its hand.
 #[derive(Clone, Debug)]
 pub(crate) struct CarriedGrasp {
-    /// The grasp; of quality 0 when it ended open.
+    /// The grasp; its quality is 0 if it ended open.
     pub(crate) grasp: Grasp,
-    /// The hand on the known object, moved rigidly with its contacts; `None` for another hand.
+    /// The hand on the known object, moved rigidly with its contacts; `None` if the grasp was made
+    /// by another hand.
     pub(crate) hand: Option<HandState>,
 }
 
-/// The `count` best force-closed ones, the best first.
+/// The `count` best force-closed grasps, the best first.
 pub(crate) fn best(mut carried: Vec<CarriedGrasp>, count: usize) -> Vec<CarriedGrasp> {
     carried.retain(|c| c.grasp.quality() > 0.0);
     carried.sort_by(|a, b| b.grasp.quality().total_cmp(&a.grasp.quality()));

@@ -1,10 +1,10 @@
-//! One error for the whole way from a scan to grasps.
+//! The error type of all steps from a scan to grasps.
 
 use crate::records::StoredShapeError;
 
-/// Why a step of the way from a scan to grasps failed.
+/// Why a step from a scan to grasps failed.
 ///
-/// Each variant carries the error of the crate that refused, with the index and the value at fault.
+/// Each variant contains the error of the crate that failed, with the index and the value at fault.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {

@@ -1,4 +1,5 @@
-//! The one place where the frame of the user's cloud and the centred frame meet.
+//! The conversion between the frame of the user's cloud and the centred frame; no other module
+//! converts.
 //!
 //! Both have the same axes. The origin of the centred frame is the mean of the cloud's points; all
 //! computation happens there, and everything that is reported is in the frame of the cloud.

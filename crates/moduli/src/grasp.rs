@@ -9,7 +9,8 @@ use crate::frame::CloudFrame;
 
 /// A grasp on one object.
 ///
-/// The point of (S²)^m, a direction per contact, is kept from the moment at which the grasp is found.
+/// The directions, a point of (S²)^m, are stored with the grasp; they are not recomputed from
+/// positions.
 #[derive(Clone, Debug)]
 pub struct Grasp {
     directions: Vec<Direction>,
@@ -20,11 +21,11 @@ pub struct Grasp {
     frame: CloudFrame,
 }
 
-/// Where a grasp comes from.
+/// The origin of a grasp.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Source {
-    /// Carried over from a known object.
+    /// Transferred from a known object.
     Transfer {
         /// Id and name of that object.
         from: String,
@@ -32,10 +33,10 @@ pub enum Source {
         shape_distance: f64,
         /// Quality on that object.
         source_quality: f64,
-        /// Quality here of the same directions, not improved.
+        /// Quality on this object of the same directions, before any ascent.
         naive: f64,
     },
-    /// A hand was closed on the object.
+    /// Made by closing a hand on the object.
     Synthesis {
         /// Index of the hand's pre-shape from which the fingers closed.
         preshape: usize,
@@ -53,10 +54,10 @@ pub struct HandPlacement {
     pub joints: Vec<f64>,
     /// The same before the fingers close.
     pub pregrasp_joints: Vec<f64>,
-    /// Largest distance from a contact of this hand to the grasp's own, metres.
+    /// Largest distance from a contact of this hand to the grasp's own contact, metres.
     pub contact_error: f64,
-    /// Whether the contacts are those that were looked for, and not others that the hand makes near
-    /// them.
+    /// Whether the hand meets the requested contacts. If not, the contacts are others that the hand
+    /// makes near them.
     pub met: bool,
 }
 
@@ -118,24 +119,24 @@ impl Grasp {
         self.contacts.iter().map(|c| c.inward_normal).collect()
     }
 
-    /// Where the grasp comes from.
+    /// The origin of the grasp.
     pub fn source(&self) -> &Source {
         &self.source
     }
 
-    /// The hand that takes the grasp, where one was found.
+    /// The hand of the grasp, if one was found.
     pub fn hand(&self) -> Option<&HandPlacement> {
         self.hand.as_ref()
     }
 
-    /// Pose of the palm in the frame of the cloud, where the grasp has a hand.
+    /// Pose of the palm in the frame of the cloud, if the grasp has a hand.
     pub fn palm_in_cloud(&self) -> Option<Isometry3<f64>> {
         let in_cloud = |hand: &HandPlacement| self.frame.pose_to_cloud(&hand.centred_from_palm);
         self.hand.as_ref().map(in_cloud)
     }
 }
 
-/// A list of grasps, and what became of the hand poses that were tried for it.
+/// A list of grasps, and the outcomes of the hand poses that were tried for it.
 #[derive(Clone, Debug, Default)]
 pub struct Grasps {
     pub(crate) list: Vec<Grasp>,
@@ -173,7 +174,7 @@ impl Grasps {
         self.list.is_empty()
     }
 
-    /// What became of the hand poses, where poses were tried.
+    /// The outcomes of the hand poses, if poses were tried.
     pub fn outcomes(&self) -> Option<&OutcomeCounts> {
         self.outcomes.as_ref()
     }

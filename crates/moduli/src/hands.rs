@@ -1,4 +1,4 @@
-//! Hands for carried grasps: a pose and joints that bring the tips to given contacts.
+//! Hands for transferred grasps: a pose and joint values that bring the tips to given contacts.
 
 use grasp::QualityError;
 use hand::{CollisionObject, Hand, ImproveParams, ReachOutcome, ReachParams, Reached, Reacher};
@@ -14,9 +14,9 @@ use crate::measure::Measure;
 /// How hard a hand is looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandSearch {
-    /// Random starts of the search for a hand that meets the contacts.
+    /// Number of random starts of the search for a hand that meets the contacts.
     pub starts: usize,
-    /// Closings tried around contacts that no hand meets.
+    /// Number of trial closings around contacts that no hand meets.
     pub trials: usize,
     /// First move of the contacts in such a trial, metres.
     pub spread: f64,
@@ -36,12 +36,13 @@ impl Default for HandSearch {
     }
 }
 
-/// Looks for a hand for every grasp that has none, over the threads of rayon's pool; `done` is called
-/// once per grasp. Grasps of another number of contacts than the hand has fingers stay without one.
+/// Searches a hand for every grasp that has none, on rayon's thread pool; `done` is called once per
+/// grasp. A grasp whose number of contacts differs from the hand's number of fingers is left
+/// without a hand.
 ///
-/// Where no hand meets the contacts, the best grasp that the hand makes near them takes their place,
-/// if it is stable and no worse than the naive transfer. Every grasp has a generator of its own, so
-/// the result does not depend on threads.
+/// If no hand meets the contacts, the best grasp that the hand makes near them replaces the grasp,
+/// provided that it is stable and at least as good as the naive transfer. Every grasp has its own
+/// random generator, so the result does not depend on the number of threads.
 pub(crate) fn give_hands(
     measure: &Measure<'_>,
     hand: &Hand,
@@ -74,7 +75,7 @@ pub(crate) fn give_hands(
         .filter(|(_, c)| c.grasp.hand().is_none())
         .try_for_each(|(i, carried)| {
             let mut generator = ChaCha8Rng::seed_from_u64(search.seed);
-            // Streams are independent sequences of one seed; 0 is that of the hand poses.
+            // Streams of one seed are independent; stream 0 is that of the hand poses.
             generator.set_stream(1 + i as u64);
             finder.find(carried, &mut generator)?;
             done();
@@ -106,7 +107,7 @@ impl Finder<'_> {
         Ok(())
     }
 
-    /// Takes the best contacts that the hand makes near the wanted ones.
+    /// Replaces the grasp by the best one that the hand makes near the requested contacts.
     fn settle(
         &self,
         carried: &mut CarriedGrasp,

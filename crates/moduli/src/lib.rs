@@ -1,8 +1,9 @@
 //! From a scan of an object to ranked grasps that a robot hand can execute.
 //!
 //! An [`Object`] is a smooth surface, fitted to a point cloud and proved valid. A [`Measure`] is a
-//! convention of grasp quality resolved on that object. With a [`Hand`] it finds grasps afresh, and a
-//! [`Library`] of known objects gives grasps that are carried over; a [`Plan`] does both.
+//! convention of grasp quality resolved on that object. With a [`Hand`] it synthesizes grasps by
+//! closing the hand from sampled poses. A [`Library`] of known objects provides grasps that are
+//! transferred to the object. A [`Plan`] does both and ranks the results.
 //!
 //! ```
 //! use moduli::{Convention, Format, Hand, Library, Object, Poses};
@@ -26,9 +27,9 @@
 //! # Ok::<(), moduli::Error>(())
 //! ```
 //!
-//! Lengths are metres and angles radians. What a caller gives and gets is in the frame of the
-//! *cloud*; computation happens in the *centred* frame, whose origin is the mean of the cloud
-//! ([`CloudFrame`] is the way between the two).
+//! Lengths are metres and angles radians. Arguments and results are in the frame of the *cloud*.
+//! Computation happens in the *centred* frame, whose origin is the mean of the cloud;
+//! [`CloudFrame`] converts between the two.
 
 mod carried;
 mod error;

@@ -1,4 +1,4 @@
-//! The library of known objects, and their grasps carried to a new one (Sec. IV-E).
+//! The library of known objects, and the transfer of their grasps to a new object (Sec. IV-E).
 
 use std::sync::OnceLock;
 
@@ -25,21 +25,21 @@ pub struct Library {
     own: Vec<LibraryRecord>,
 }
 
-/// How grasps are carried over from a library.
+/// Options of the transfer from a library.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TransferOptions {
-    /// Nearest known objects from which grasps are carried.
+    /// Number of nearest known objects from which grasps are transferred.
     pub neighbours: usize,
-    /// Grasps carried from each, the best first.
+    /// Number of grasps transferred from each, the best first.
     pub grasps: usize,
-    /// Grasps kept, the best, for which a hand is looked for.
+    /// Number of best transferred grasps that are kept and for which a hand is searched.
     pub keep: usize,
-    /// How a hand is looked for.
+    /// Options of the search for a hand.
     pub search: HandSearch,
 }
 
 impl Default for TransferOptions {
-    /// Four grasps of each of the three nearest objects, the best twelve kept.
+    /// Four grasps from each of the three nearest objects, of which the best twelve are kept.
     fn default() -> Self {
         Self {
             neighbours: 3,
@@ -50,7 +50,7 @@ impl Default for TransferOptions {
     }
 }
 
-/// A known object near the one that is grasped.
+/// A known object near the object to be grasped.
 #[derive(Clone, Debug)]
 pub struct Neighbour {
     /// Id and name.
@@ -64,14 +64,14 @@ pub struct Neighbour {
 }
 
 impl Neighbour {
-    /// Name, and distance of the shapes in metres.
+    /// Name of the object, and distance of the shapes in metres.
     pub(crate) fn described(&self) -> (String, f64) {
         (self.name.clone(), self.distance)
     }
 }
 
 impl Library {
-    /// The library that moduli carries: twelve objects with grasps of the Schunk SDH.
+    /// The built-in library: twelve objects with grasps of the Schunk SDH.
     pub fn builtin() -> &'static Self {
         static BUILTIN: Library = Library {
             builtin: true,
@@ -93,15 +93,15 @@ impl Library {
         Self::default().with(record)
     }
 
-    /// Adds the objects of a record, which may have been made with another hand.
+    /// Adds the objects of a record, which may contain grasps of another hand.
     #[must_use]
     pub fn with(mut self, record: LibraryRecord) -> Self {
         self.own.push(record);
         self
     }
 
-    /// The stored objects: a record per call of [`Library::with`], after the built-in one where the
-    /// library began as that. The built-in record is decoded once.
+    /// The stored objects: one record per call of [`Library::with`], after the built-in record if
+    /// the library began with it. The built-in record is decoded once per process.
     ///
     /// # Errors
     /// The bytes of the built-in library are damaged.
@@ -160,8 +160,8 @@ impl Library {
             .collect()
     }
 
-    /// Carries the best grasps of the nearest known objects to the object of `measure`, and looks for
-    /// a pose of `hand` for each.
+    /// Transfers the best grasps of the nearest known objects to the object of `measure`, and
+    /// searches a pose of `hand` for each.
     ///
     /// # Errors
     /// An entry is damaged, or a transfer or a quality cannot be computed.
@@ -178,8 +178,8 @@ impl Library {
     }
 }
 
-/// Carries the first `grasps` grasps of every neighbour to the object of `measure`, over the threads
-/// of rayon's pool; those of another number of contacts than the hand has fingers are left
+/// Transfers the first `grasps` grasps of every neighbour to the object of `measure`, on rayon's
+/// thread pool. Grasps whose number of contacts differs from the hand's number of fingers are left
 /// out. `done` is called once per grasp.
 pub(crate) fn carry(
     measure: &Measure<'_>,
@@ -237,7 +237,7 @@ fn carry_one(
     let naive = pair.naive(directions)?.quality;
     let contacts = contacts_on(pair.target(), &arrived.directions);
     let held = contacts_on(pair.source(), directions);
-    // Poses and joints of another hand say nothing of this one's.
+    // Poses and joints of another hand do not apply to this one.
     let same_hand = neighbour.hand == hand.name();
     let state = same_hand.then(|| HandState {
         object_from_palm: carried_pose(&grasp.centred_from_palm(), &held, &contacts),

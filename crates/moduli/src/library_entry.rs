@@ -1,4 +1,4 @@
-//! What a library keeps of an object: its surface and its best grasps, spread out.
+//! Library entries: the surface of an object and its best grasps at a least separation.
 
 use grasp::Contact;
 use nalgebra::Point3;
@@ -11,14 +11,14 @@ use crate::records::library_grasp;
 /// Which grasps of an object a library keeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kept {
-    /// Grasps, at most.
+    /// Largest number of grasps.
     pub grasps: usize,
-    /// Two grasps are at least this far apart ([`separation`]).
+    /// Least separation of any two grasps ([`separation`]).
     pub separation: f64,
 }
 
 impl Default for Kept {
-    /// Twelve grasps, a quarter of the object's mean radius apart.
+    /// Twelve grasps with a separation of a quarter of the object's mean radius.
     fn default() -> Self {
         Self {
             grasps: 12,
@@ -28,10 +28,10 @@ impl Default for Kept {
 }
 
 impl Object {
-    /// The entry of this object in a library: its surface, and the best of the ranked grasps that have a
+    /// The library entry of this object: its surface, and the best of the ranked grasps that have a
     /// hand.
     ///
-    /// `id` is short and identifies the entry; `name` is for people.
+    /// `id` is a short identifier; `name` is for display.
     pub fn library_entry(
         &self,
         id: &str,
@@ -49,7 +49,8 @@ impl Object {
     }
 }
 
-/// The first grasps of a ranked list without those nearer than the separation to an earlier one.
+/// The first grasps of a ranked list, without those closer than the least separation to an earlier
+/// one.
 fn spread_out<'a>(ranked: &'a Grasps, radius: f64, kept: &Kept) -> Vec<&'a Grasp> {
     let mut chosen: Vec<&Grasp> = Vec::with_capacity(kept.grasps);
     for grasp in ranked.iter() {
@@ -70,7 +71,7 @@ fn spread_out<'a>(ranked: &'a Grasps, radius: f64, kept: &Kept) -> Vec<&'a Grasp
 /// The least d(g, g′) of Sec. III-C over all orders of the contacts, with lengths divided by
 /// `radius`; `None` for different numbers of contacts.
 ///
-/// Grasps that differ only in the order of the fingers are the same to an object.
+/// Grasps that differ only in the order of the fingers apply the same wrenches to the object.
 pub fn separation(a: &[Contact], b: &[Contact], radius: f64) -> Option<f64> {
     let scaled = |order: &mut dyn Iterator<Item = &Contact>| grasp::Grasp {
         contacts: order

@@ -1,4 +1,4 @@
-//! How quality is measured on one object, and when a grasp counts as stable.
+//! How quality is measured on one object, and when a grasp is stable.
 
 use grasp::{Contact, Convention, Epsilon, GraspModel, QualityError, Workspace};
 use hand::{Hand, TipModel};
@@ -81,7 +81,7 @@ impl<'a> Measure<'a> {
         &self.rule
     }
 
-    /// The convention with everything filled in that the object decides.
+    /// The convention resolved on the object.
     pub fn convention(&self) -> &Convention {
         self.resolved.convention()
     }
@@ -91,12 +91,12 @@ impl<'a> Measure<'a> {
         self.resolved.centre()
     }
 
-    /// The quality from which a grasp is stable.
+    /// The quality above which a grasp is stable.
     pub fn stable_above(&self) -> f64 {
         self.convention().stable_above
     }
 
-    /// Whether a quality, or the proved lower end of one, counts as stable.
+    /// Whether a quality, or a proved lower bound of one, is stable.
     pub fn is_stable(&self, quality: f64) -> bool {
         self.convention().is_stable(quality)
     }

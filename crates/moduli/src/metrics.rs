@@ -1,4 +1,4 @@
-//! Every quality measure of one grasp: how large, how even and how robust its set of wrenches is.
+//! Quality metrics of one grasp: size, isotropy and robustness of its set of wrenches.
 
 use grasp::{
     Contact, Convention, Edges, Epsilon, GraspModel, Resistance, Workspace, Wrench, WrenchError,
@@ -9,12 +9,13 @@ use crate::error::Error;
 use crate::grasp::Grasp;
 use crate::measure::Measure;
 
-/// The largest friction coefficient tried in the search for the least.
+/// Largest friction coefficient in the search for the least one.
 const MOST_FRICTION: f64 = 100.0;
 
 /// All metrics of one grasp under one convention.
 ///
-/// The wrench unit is that of the convention: a force, and a torque divided by the torque length.
+/// The unit of wrenches is that of the convention: a force, and a torque divided by the torque
+/// length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metrics {
     /// Epsilon quality: the radius of the largest ball about 0 in the hull of the wrenches, with its

@@ -1,4 +1,4 @@
-//! The main job: grasps carried from known objects and grasps found afresh, with a hand, ranked.
+//! The complete pipeline: transferred and synthesized grasps, with a hand, ranked.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -12,19 +12,19 @@ use crate::library::{Library, Neighbour, TransferOptions, carry};
 use crate::measure::Measure;
 use crate::synthesis::Poses;
 
-/// What is tried, and how much of it is kept.
+/// What is computed, and how many grasps are kept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Transfer from the library.
+    /// Options of the transfer from the library.
     pub transfer: TransferOptions,
-    /// Synthesis with the hand.
+    /// Options of the synthesis with the hand.
     pub poses: Poses,
-    /// Synthesized grasps kept, the best.
+    /// Number of best synthesized grasps that are kept.
     pub keep: usize,
 }
 
 impl Default for Plan {
-    /// Transfers as by default, 700 hand poses, twelve grasps kept of each kind.
+    /// Default transfers, 700 hand poses, and at most twelve grasps of each kind.
     fn default() -> Self {
         Self {
             transfer: TransferOptions::default(),
@@ -37,25 +37,25 @@ impl Default for Plan {
     }
 }
 
-/// A part of the plan.
+/// A stage of the plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Grasps are carried from known objects.
+    /// Transfer of grasps from known objects.
     Transfer,
-    /// A hand is looked for at the carried grasps.
+    /// Search for a hand at the transferred grasps.
     Reach,
-    /// The hand is closed from sampled poses.
+    /// Synthesis: closing the hand from sampled poses.
     Synthesis,
 }
 
-/// How far a stage is.
+/// Progress of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
     /// The stage.
     pub stage: Stage,
-    /// Steps done.
+    /// Number of completed steps.
     pub done: usize,
-    /// Steps in all.
+    /// Number of steps.
     pub total: usize,
 }
 
@@ -64,32 +64,34 @@ pub struct Progress {
 pub struct Planned {
     /// Force-closed grasps, the best first.
     pub grasps: Vec<Grasp>,
-    /// What became of the transferred grasps.
+    /// Outcomes of the transfers.
     pub transferred: TransferCounts,
-    /// What became of the hand poses.
+    /// Outcomes of the hand poses.
     pub outcomes: OutcomeCounts,
 }
 
-/// What became of the transferred grasps.
+/// Outcomes of the transfers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TransferCounts {
-    /// The known objects from which grasps were carried: name, and distance of the shapes in metres.
+    /// The known objects from which grasps were transferred: name, and distance of the shapes in
+    /// metres.
     pub neighbours: Vec<(String, f64)>,
-    /// Grasps carried.
+    /// Number of transferred grasps.
     pub all: usize,
-    /// Of these, force-closed on the object.
+    /// Number of these that are force-closed on the object.
     pub closed: usize,
-    /// Of the kept ones, with a hand.
+    /// Number of kept grasps that have a hand.
     pub with_hand: usize,
-    /// Of these, those whose contacts the hand meets; it makes others near the contacts of the rest.
+    /// Number of these whose contacts the hand meets; for the others it makes contacts near them.
     pub met: usize,
-    /// Grasps left out, because they have another number of contacts than the hand has fingers.
+    /// Number of grasps left out because their number of contacts differs from the hand's number of
+    /// fingers.
     pub of_other_count: usize,
 }
 
 impl Plan {
-    /// Carries grasps from the library, closes the hand from sampled poses, and ranks everything by
-    /// quality.
+    /// Transfers grasps from the library, closes the hand from sampled poses, and ranks all grasps
+    /// by quality.
     ///
     /// `progress` is called after every step, from any thread. The result does not depend on the
     /// number of threads.
@@ -116,7 +118,7 @@ impl Plan {
         })
     }
 
-    /// Grasps of the nearest known objects, the best with a hand where one is found.
+    /// The grasps of the nearest known objects, the best ones with a hand if one is found.
     fn carry(
         &self,
         measure: &Measure<'_>,

@@ -1,4 +1,4 @@
-//! An object whose surface is a map of the sphere into space (M^sph of the paper).
+//! Objects whose surface is a map of the sphere into space (M^sph of the paper).
 
 use nalgebra::{Point3, UnitVector3};
 use record::SphericalRecord;

@@ -1,4 +1,4 @@
-//! Grasps of a hand on an object, found by closing it from sampled poses (Sec. IV-C).
+//! Synthesis: grasps of a hand on an object, found by closing it from sampled poses (Sec. IV-C).
 
 use hand::{
     ClosingRules, Hand, HandGrasp, PoseSampling, Synthesis, SynthesisError, SynthesisParams,
@@ -10,22 +10,23 @@ use crate::error::Error;
 use crate::grasp::{Grasp, Grasps, HandPlacement, Source};
 use crate::measure::Measure;
 
-/// Which poses of a hand are tried, and when a closed hand counts as a grasp.
+/// Which poses of a hand are sampled, and which closed poses are kept as grasps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Poses {
     /// Number of poses.
     pub count: usize,
-    /// Indices of the pre-shapes from which the fingers close; all when empty.
+    /// Indices of the pre-shapes from which the fingers close; all if empty.
     pub preshapes: Vec<usize>,
-    /// Range of the distance from the surface, metres; that of the hand when absent.
+    /// Range of the distance from the surface, metres; the hand's range if absent.
     pub standoff: Option<(f64, f64)>,
-    /// Whether fingers close past their tips until every link holds (power grasps).
+    /// Whether fingers continue to close past their tips until every link has contact (power
+    /// grasps).
     pub power: bool,
-    /// The quality from which a grasp counts as stable; that of the measure when absent.
+    /// The quality from which a grasp counts as stable; the measure's threshold if absent.
     pub least_quality: Option<f64>,
     /// Seed of the poses: the same seed gives the same grasps on any number of threads.
     pub seed: u64,
-    /// Stream of that seed: the streams of one seed are independent of each other.
+    /// Stream of that seed; the streams of one seed are independent.
     pub stream: u64,
 }
 

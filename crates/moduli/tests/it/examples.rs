@@ -1,4 +1,4 @@
-//! Every example runs to its end.
+//! Runs every example.
 
 #[path = "../../examples/01_fit.rs"]
 mod fit;

@@ -1,4 +1,4 @@
-//! The tests of `moduli` that use it from outside, as one program.
+//! The integration tests of `moduli`, as one program.
 
 mod common;
 mod examples;

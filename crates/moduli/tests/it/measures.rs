@@ -1,4 +1,4 @@
-//! A measure owns its threshold, its centre and its torque length, on its own object.
+//! A measure has the threshold, the centre and the torque length of its own object.
 
 use moduli::{Convention, Hand, Library, Poses};
 
