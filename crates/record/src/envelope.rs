@@ -35,7 +35,7 @@ impl Kind {
         }
     }
 
-    /// The version that is written, which is also the only one that is read.
+    /// The version that is written, and the only one that is read.
     fn version(self) -> u16 {
         match self {
             Kind::Shape | Kind::Library | Kind::Spherical | Kind::LibraryObject => 1,

@@ -91,7 +91,7 @@ pub struct ObjectRecord {
     /// The plane on which the object stands; version 2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub support: Option<SupportRecord>,
-    /// Warnings to the user about the object, one sentence each; version 2.
+    /// What the user should know about the object, one sentence each; version 2.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
 }

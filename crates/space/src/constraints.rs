@@ -55,9 +55,7 @@ pub enum ConstraintError {
         by: f64,
     },
     /// No grasp reachable from the start is closed under the second objective.
-    #[error(
-        "the start misses closure under the friction margin by {by}, no closed grasp is near"
-    )]
+    #[error("the start misses closure under the friction margin by {by}, no closed grasp is near")]
     FrictionMargin {
         /// Distance from closure.
         by: f64,
