@@ -4,6 +4,7 @@ mod grasps;
 mod hands;
 mod library;
 mod shapes;
+mod support;
 
 use std::path::PathBuf;
 

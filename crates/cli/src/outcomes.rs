@@ -33,6 +33,9 @@ pub(crate) fn why_none(outcomes: &OutcomeCounts, hand: &Hand, tips: TipModel) ->
         return "no pose was tried".to_owned();
     };
     let advice = match *reason {
+        "below_support" => {
+            "the object may lie too low for the hand, or stand on no plane (--support none) or on another one (--support A,B,C,D)"
+        }
         "base_near_object" | "part_near_object" | "starts_in_object" => {
             "the object may be too large for the hand, or the least stand-off (standoff_m of the TOML) too small"
         }

@@ -1,5 +1,6 @@
 //! Closing the fingers of a hand on an object without ever passing through it.
 
+mod above;
 mod group;
 mod wrapping;
 
@@ -7,6 +8,7 @@ use nalgebra::Isometry3;
 
 use crate::collision::{CollisionObject, Precision, first_close_pair};
 use crate::hand::{Finger, FingerGroup, Hand};
+use crate::support::Support;
 use group::close_group;
 use wrapping::wrap_group;
 
@@ -25,18 +27,24 @@ pub struct ClosingRules {
     /// Close past the tips (power grasps): where a link other than a tip meets the object it
     /// holds it as a tip does, the joints that move it stop and those beyond go on.
     pub past_tips: bool,
+    /// The plane on which the object stands, if it stands on one.
+    pub support: Option<Support>,
+    /// Every part of the hand stays at least this far above that plane, metres.
+    pub support_clearance: f64,
     /// Distances are found to this accuracy where they decide, metres.
     pub tolerance: f64,
 }
 
 impl Default for ClosingRules {
-    /// The paper's 1 mm, 5 mm and 5 mm, tips only.
+    /// The paper's 1 mm, 5 mm and 5 mm, tips only; no support, of which 3 mm would be kept.
     fn default() -> Self {
         ClosingRules {
             tip_gap: 1e-3,
             object_clearance: 5e-3,
             self_clearance: 5e-3,
             past_tips: false,
+            support: None,
+            support_clearance: 3e-3,
             tolerance: 2e-5,
         }
     }
@@ -45,6 +53,11 @@ impl Default for ClosingRules {
 /// Why a pose of the hand gives no grasp. Links and fingers by index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rejection {
+    /// A link is below the support plane, or too near to it.
+    BelowSupport {
+        /// The link.
+        link: usize,
+    },
     /// A link that closing does not move is too near to the object.
     BaseNearObject {
         /// The link.
@@ -118,6 +131,7 @@ pub fn close_hand(
     let links = 1..hand.model.links.len();
     hand.model
         .update_links(joints, links, &mut state.object_from_links);
+    above::check_all(hand, &state.object_from_links, rules)?;
     check_base(object, hand, &state.object_from_links, rules)?;
     let mut missing = None;
     for group in &hand.groups {
@@ -135,7 +149,10 @@ pub fn close_hand(
                 missing = missing.or(Some(reason));
                 reopen(hand, group, joints, &mut state);
             }
-            other => other?,
+            other => {
+                other?;
+                above::check_way(hand, group, joints, &state, rules)?;
+            }
         }
         if group.compliant {
             check_base(object, hand, &state.object_from_links, rules)?;
@@ -146,6 +163,7 @@ pub fn close_hand(
     {
         return Err(reason);
     }
+    above::check_all(hand, &state.object_from_links, rules)?;
     match first_close_pair(hand, &state.object_from_links, rules.self_clearance) {
         Some((first, second, _)) => Err(Rejection::PartsNear { first, second }),
         None => Ok(state),

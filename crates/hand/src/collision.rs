@@ -1,5 +1,6 @@
 //! Distances between the parts of a hand and to the object; the only user of parry.
 
+mod extent;
 mod gap;
 mod object;
 mod piece;

@@ -33,6 +33,7 @@ mod mesh_file;
 mod model;
 mod pose_sampling;
 mod reach;
+mod support;
 mod synthesis;
 mod tip_model;
 mod urdf;
@@ -53,6 +54,7 @@ pub use reach::{
     HandState, ImproveParams, Improvement, ReachOutcome, ReachParams, Reached, Reacher,
     reach_contacts,
 };
+pub use support::Support;
 pub use synthesis::{
     HandGrasp, Outcome, OutcomeCounts, Synthesis, SynthesisError, SynthesisParams, collect,
     evaluate_pose, synthesize, synthesize_watched,

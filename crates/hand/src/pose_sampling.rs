@@ -9,7 +9,11 @@ use rand::{Rng, RngExt};
 use shape::RadialShape;
 
 use crate::hand::Hand;
+use crate::support::Support;
 use antipodal::Pairs;
+
+/// Draws of one pose beyond the first.
+const REDRAWS: usize = 50;
 
 /// A pose of the hand before its fingers close.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,9 +27,12 @@ pub struct HandPose {
 /// What is drawn: all uniformly and independently.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseSampling {
-    /// Least height z of the direction of approach on the unit sphere; 0 is the upper
-    /// hemisphere of the paper, -1 the whole sphere.
+    /// Least height of the direction from which the hand comes, on the unit sphere, along z or along the
+    /// normal of the support; 0 is the upper hemisphere of the paper, -1 the whole sphere.
     pub least_height: f64,
+    /// The plane on which the object stands, and how far above it the links of the open hand are,
+    /// metres: poses are drawn again, up to fifty times, until they are.
+    pub support: Option<(Support, f64)>,
     /// Range of the distance from the surface to the approach point, along the line of
     /// approach, metres.
     pub standoff: (f64, f64),
@@ -42,6 +49,7 @@ impl PoseSampling {
     pub fn of_hand(hand: &Hand) -> Self {
         PoseSampling {
             least_height: 0.0,
+            support: None,
             standoff: hand.standoff(),
             preshapes: (0..hand.preshapes().len()).collect(),
             antipodal: (hand.fingers().len() == 2).then(|| 0.5_f64.atan()),
@@ -71,7 +79,7 @@ impl PoseSampling {
         }
         let pairs = self
             .antipodal
-            .map(|cone| Pairs::new(surface, hand, &self.preshapes, cone, self.least_height));
+            .map(|cone| Pairs::new(surface, hand, self, cone));
         let found = |rng: &mut R| {
             let (which, pose) = pairs.as_ref()?.draw(hand, rng)?;
             Some(HandPose {
@@ -80,8 +88,38 @@ impl PoseSampling {
             })
         };
         (0..count)
-            .map(|_| found(rng).unwrap_or_else(|| self.draw(surface, hand, rng)))
+            .map(|_| found(rng).unwrap_or_else(|| self.draw_above(surface, hand, rng)))
             .collect()
+    }
+
+    /// A pose of the open hand above the support, if one is found.
+    fn draw_above<R: Rng + ?Sized>(
+        &self,
+        surface: &RadialShape,
+        hand: &Hand,
+        rng: &mut R,
+    ) -> HandPose {
+        let mut pose = self.draw(surface, hand, rng);
+        for _ in 0..REDRAWS {
+            if self.is_above(hand, &pose) {
+                break;
+            }
+            pose = self.draw(surface, hand, rng);
+        }
+        pose
+    }
+
+    fn is_above(&self, hand: &Hand, pose: &HandPose) -> bool {
+        let Some((support, clearance)) = &self.support else {
+            return true;
+        };
+        let joints = &hand.preshapes()[pose.preshape].joints;
+        let Ok(links) = hand.model().root_from_links(joints) else {
+            return true;
+        };
+        let seen = support.seen_from(&pose.object_from_palm);
+        hand.lowest_link(&seen, &links)
+            .is_none_or(|(_, height)| height >= *clearance)
     }
 
     fn draw<R: Rng + ?Sized>(&self, surface: &RadialShape, hand: &Hand, rng: &mut R) -> HandPose {
@@ -93,12 +131,24 @@ impl PoseSampling {
         let ring = (1.0 - z * z).max(0.0).sqrt();
         let (sin, cos) = azimuth.sin_cos();
         let from = UnitVector3::new_normalize(Vector3::new(ring * cos, ring * sin, z));
+        let from = match &self.support {
+            Some((support, _)) => upright(&support.normal) * from,
+            None => from,
+        };
         let distance = surface.radius(&from) + standoff;
         HandPose {
             object_from_palm: aimed(hand, &from, distance, roll),
             preshape,
         }
     }
+}
+
+/// The least rotation that takes +z to the normal of a support; none where it is +z.
+fn upright(normal: &UnitVector3<f64>) -> UnitQuaternion<f64> {
+    let z = Vector3::z_axis();
+    UnitQuaternion::rotation_between_axis(&z, normal).unwrap_or_else(|| {
+        UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI)
+    })
 }
 
 /// The pose whose line of approach runs from `from · distance` to the origin.

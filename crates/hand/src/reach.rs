@@ -171,7 +171,7 @@ impl<'a> Reacher<'a> {
             let start = match known.get(number - 1) {
                 Some(hand) => problem.known_start(hand, wanted),
                 None if number % 2 == 0 => problem.aligned_start(wanted, &orders, rng),
-                None => problem.approaching_start(wanted, rng),
+                None => problem.approaching_start(wanted, params.rules.support.as_ref(), rng),
             };
             let Start { mut x, fingers } = start;
             let task = Task {

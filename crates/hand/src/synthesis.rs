@@ -129,7 +129,8 @@ impl OutcomeCounts {
 
 impl Rejection {
     /// All reasons, in the order in which a pose meets them.
-    pub const REASONS: [&'static str; 6] = [
+    pub const REASONS: [&'static str; 7] = [
+        "below_support",
         "base_near_object",
         "starts_in_object",
         "part_near_object",
@@ -141,12 +142,13 @@ impl Rejection {
     /// The kind of reason, without link or finger.
     pub fn reason(&self) -> &'static str {
         match self {
-            Rejection::BaseNearObject { .. } => Self::REASONS[0],
-            Rejection::StartsInObject { .. } => Self::REASONS[1],
-            Rejection::PartNearObject { .. } => Self::REASONS[2],
-            Rejection::TipDidNotArrive { .. } => Self::REASONS[3],
-            Rejection::PartsNear { .. } => Self::REASONS[4],
-            Rejection::NoContact { .. } => Self::REASONS[5],
+            Rejection::BelowSupport { .. } => Self::REASONS[0],
+            Rejection::BaseNearObject { .. } => Self::REASONS[1],
+            Rejection::StartsInObject { .. } => Self::REASONS[2],
+            Rejection::PartNearObject { .. } => Self::REASONS[3],
+            Rejection::TipDidNotArrive { .. } => Self::REASONS[4],
+            Rejection::PartsNear { .. } => Self::REASONS[5],
+            Rejection::NoContact { .. } => Self::REASONS[6],
         }
     }
 
@@ -155,6 +157,9 @@ impl Rejection {
         let link = |l: &usize| hand.model().links()[*l].name.as_str();
         let finger = |f: &usize| hand.fingers()[*f].name.as_str();
         match self {
+            Rejection::BelowSupport { link: l } => {
+                format!("'{}' is too near to the support plane or below it", link(l))
+            }
             Rejection::BaseNearObject { link: l } => {
                 format!("'{}' is too near to the object", link(l))
             }

@@ -4,6 +4,7 @@
 //! Both have the same axes. The origin of the centred frame is the mean of the cloud's points; all
 //! computation happens there, and everything that is reported is in the frame of the cloud.
 
+use hand::Support;
 use nalgebra::{Isometry3, Point3, Translation3};
 
 /// Where the centred frame of an object lies in the frame of its cloud.
@@ -38,6 +39,22 @@ impl CloudFrame {
         in_cloud - self.centre.coords
     }
 
+    /// A plane given in the frame of the cloud, in the centred frame.
+    pub fn plane_to_centred(&self, plane: &Support) -> Support {
+        Support {
+            offset: plane.offset - plane.normal.dot(&self.centre.coords),
+            ..*plane
+        }
+    }
+
+    /// A plane given in the centred frame, in the frame of the cloud.
+    pub fn plane_to_cloud(&self, plane: &Support) -> Support {
+        Support {
+            offset: plane.offset + plane.normal.dot(&self.centre.coords),
+            ..*plane
+        }
+    }
+
     /// A pose given in the centred frame, in the frame of the cloud.
     pub fn pose_to_cloud(&self, centred_from_palm: &Isometry3<f64>) -> Isometry3<f64> {
         Translation3::from(self.centre.coords) * centred_from_palm
@@ -55,6 +72,13 @@ mod tests {
         assert!((frame.to_centred(&frame.to_cloud(&p)) - p).norm() <= 1e-15);
         assert_eq!(frame.to_centred(&frame.centre_in_cloud()), Point3::origin());
         assert_eq!(frame.to_cloud(&frame.cloud_origin()), Point3::origin());
+        let plane = Support {
+            normal: nalgebra::Vector3::z_axis(),
+            offset: 0.97,
+        };
+        let centred = frame.plane_to_centred(&plane);
+        assert!((centred.height(&frame.to_centred(&p)) - plane.height(&p)).abs() <= 1e-15);
+        assert!((frame.plane_to_cloud(&centred).offset - plane.offset).abs() <= 1e-15);
         let pose = Isometry3::translation(0.1, 0.2, 0.3);
         let moved = frame.pose_to_cloud(&pose) * Point3::origin();
         assert!((moved - frame.to_cloud(&Point3::new(0.1, 0.2, 0.3))).norm() <= 1e-15);

@@ -59,6 +59,8 @@ pub struct HandPlacement {
     /// Whether the hand meets the requested contacts. If not, the contacts are others that the hand
     /// makes near them.
     pub met: bool,
+    /// Least height of a link above the plane on which the object stands, metres, where there is one.
+    pub clearance_to_support: Option<f64>,
 }
 
 impl Grasp {

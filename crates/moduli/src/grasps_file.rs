@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use hand::{Drive, Hand, Joint};
+use hand::{Drive, Hand, Joint, Support};
 use record::grasps::{
     AssessmentRecord, ConventionRecord, ExecutionRecord, GRASPS_VERSION, HandRecord, JointRecord,
     PoseRecord, SourceRecord,
 };
+use record::grasps::{ObjectRecord, SupportRecord};
 use record::{GraspRecord, GraspsFile};
 
 use crate::grasp::{Grasp, HandPlacement, Source};
@@ -30,13 +31,25 @@ impl Measure<'_> {
     pub fn file_of(&self, grasps: Vec<GraspRecord>) -> GraspsFile {
         GraspsFile {
             version: GRASPS_VERSION,
-            object: self.object().object_record(),
+            object: ObjectRecord {
+                support: self
+                    .support()
+                    .map(|s| support_record(&self.object().frame().plane_to_cloud(&s))),
+                ..self.object().object_record()
+            },
             convention: ConventionRecord {
                 contact: contact_model_record(self.tips()),
                 ..convention_record(self.convention())
             },
             grasps,
         }
+    }
+}
+
+fn support_record(support: &Support) -> SupportRecord {
+    SupportRecord {
+        normal: support.normal.into_inner().into(),
+        offset_m: support.offset,
     }
 }
 
@@ -95,7 +108,11 @@ fn hand_record(grasp: &Grasp, placement: &HandPlacement, hand: &Hand) -> HandRec
         joints: by_name(hand, &placement.joints),
         pregrasp_joints: by_name(hand, &placement.pregrasp_joints),
         contact_error_m: placement.contact_error,
-        execution: ExecutionRecord::default(),
+        execution: ExecutionRecord {
+            approach_direction: Some((pose * hand.approach_axis()).into_inner().into()),
+            clearance_to_support_m: placement.clearance_to_support,
+            ..ExecutionRecord::default()
+        },
     }
 }
 

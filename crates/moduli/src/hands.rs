@@ -1,7 +1,10 @@
 //! Hands for transferred grasps: a pose and joint values that bring the tips to given contacts.
 
 use grasp::QualityError;
-use hand::{CollisionObject, Hand, ImproveParams, ReachOutcome, ReachParams, Reached, Reacher};
+use hand::{
+    ClosingRules, CollisionObject, Hand, ImproveParams, ReachOutcome, ReachParams, Reached, Reacher,
+};
+use nalgebra::Isometry3;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rayon::prelude::*;
@@ -10,6 +13,20 @@ use crate::carried::CarriedGrasp;
 use crate::error::Error;
 use crate::grasp::{HandPlacement, Source};
 use crate::measure::Measure;
+
+impl Measure<'_> {
+    /// Least height of a hand's links above the support, metres.
+    pub(crate) fn clearance(
+        &self,
+        hand: &Hand,
+        centred_from_palm: &Isometry3<f64>,
+        joints: &[f64],
+    ) -> Option<f64> {
+        let seen = self.support()?.seen_from(centred_from_palm);
+        let links = hand.model().root_from_links(joints).ok()?;
+        hand.lowest_link(&seen, &links).map(|(_, height)| height)
+    }
+}
 
 /// How hard a hand is looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +77,10 @@ pub(crate) fn give_hands(
     let params = ReachParams {
         starts: search.starts,
         friction: measure.convention().friction,
+        rules: ClosingRules {
+            support: measure.support(),
+            ..ClosingRules::default()
+        },
         ..ReachParams::default()
     };
     let finder = Finder {
@@ -149,8 +170,10 @@ impl Finder<'_> {
 
     fn placement(&self, found: Reached) -> HandPlacement {
         let opening = ReachParams::default().opening;
+        let pose = found.object_from_palm;
         HandPlacement {
-            centred_from_palm: found.object_from_palm,
+            clearance_to_support: self.measure.clearance(self.hand, &pose, &found.joints),
+            centred_from_palm: pose,
             pregrasp_joints: self.hand.opened(&found.joints, opening),
             joints: found.joints,
             contact_error: found.position_error,

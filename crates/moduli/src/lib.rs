@@ -33,6 +33,7 @@
 
 mod carried;
 mod error;
+mod foot;
 mod frame;
 mod grasp;
 pub mod grasps_file;
@@ -64,7 +65,7 @@ pub use ::grasp::{
     CentreRule, Contact, Convention, EdgeNorm, Edges, Epsilon, Resistance, TangentRule,
     TorqueLength, Wrench,
 };
-pub use ::hand::{Hand, OutcomeCounts, TipModel};
+pub use ::hand::{Hand, OutcomeCounts, Support, TipModel};
 pub use ::record;
 pub use ::shape::io::Format;
 pub use ::shape::{

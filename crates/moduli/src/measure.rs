@@ -1,7 +1,7 @@
 //! How quality is measured on one object, and when a grasp is stable.
 
 use grasp::{Contact, Convention, Epsilon, GraspModel, QualityError, Workspace};
-use hand::{Hand, TipModel};
+use hand::{Hand, Support, TipModel};
 use nalgebra::Point3;
 use space::point::contacts_on;
 use space::{MonotoneAscent, Objective, ResolvedConvention};
@@ -22,6 +22,7 @@ pub struct Measure<'a> {
     rule: Convention,
     resolved: ResolvedConvention,
     tips: Option<TipModel>,
+    support: Option<Support>,
 }
 
 impl Object {
@@ -47,7 +48,23 @@ impl<'a> Measure<'a> {
             rule: rule.clone(),
             resolved: ResolvedConvention::new(rule, object.shape(), &origin),
             tips: None,
+            support: None,
         })
+    }
+
+    /// The same on a plane, given in the frame of the cloud: hands stay above it.
+    #[must_use]
+    pub fn with_support(self, support: Option<Support>) -> Self {
+        let centred = |plane| self.object.frame().plane_to_centred(&plane);
+        Self {
+            support: support.map(centred),
+            ..self
+        }
+    }
+
+    /// The plane on which the object stands, in the centred frame.
+    pub fn support(&self) -> Option<Support> {
+        self.support
     }
 
     /// The same with contacts of this model. Without it contacts are points, and those of a hand what

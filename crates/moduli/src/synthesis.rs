@@ -88,6 +88,11 @@ impl Measure<'_> {
         } else {
             poses.preshapes.clone()
         };
+        let rules = ClosingRules {
+            past_tips: poses.power,
+            support: self.support(),
+            ..ClosingRules::default()
+        };
         let usual = PoseSampling::of_hand(hand);
         let cone = self.convention().friction.atan();
         let params = SynthesisParams {
@@ -96,12 +101,10 @@ impl Measure<'_> {
                 preshapes,
                 standoff: poses.standoff.unwrap_or(hand.standoff()),
                 antipodal: usual.antipodal.map(|usual| usual.min(cone)),
+                support: self.support().map(|s| (s, rules.support_clearance)),
                 ..usual
             },
-            rules: ClosingRules {
-                past_tips: poses.power,
-                ..ClosingRules::default()
-            },
+            rules,
             convention: self.convention().clone(),
             centre: self.centre(),
             tips: self.tips(),
@@ -124,6 +127,7 @@ impl Measure<'_> {
             pregrasp_joints: hand.preshapes()[found.preshape].joints.clone(),
             contact_error: 0.0,
             met: true,
+            clearance_to_support: self.clearance(hand, &found.object_from_palm, &found.joints),
         })))
     }
 }

@@ -7,6 +7,7 @@ use clap::{Args, Subcommand};
 use hand::TipModel;
 
 use super::grasps::contact_option;
+use super::support::SupportOptions;
 use super::{CloudOptions, ConventionOptions, count_in};
 
 /// Which hand.
@@ -60,6 +61,8 @@ pub(crate) struct SynthesizeOptions {
     /// soft fingers of the TOML's pad radius for a hand of two fingers, points for others.
     #[arg(long, value_parser = contact_option)]
     pub(crate) contact: Option<TipModel>,
+    #[command(flatten)]
+    pub(crate) support: SupportOptions,
     #[command(flatten)]
     pub(crate) convention: ConventionOptions,
 }
@@ -127,6 +130,8 @@ pub(crate) struct GraspOptions {
     /// soft fingers of the TOML's pad radius for a hand of two fingers, points for others.
     #[arg(long, value_parser = contact_option)]
     pub(crate) contact: Option<TipModel>,
+    #[command(flatten)]
+    pub(crate) support: SupportOptions,
     #[command(flatten)]
     pub(crate) convention: ConventionOptions,
     /// Number of library objects to transfer from, the nearest ones.

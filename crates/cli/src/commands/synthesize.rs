@@ -53,7 +53,8 @@ pub(crate) fn run(options: &SynthesizeOptions, common: &Common) -> Result<(), Fa
     let measure = object
         .measure(&convention)
         .map_err(refused)?
-        .with_tips(tips);
+        .with_tips(tips)
+        .with_support(options.support.under(&object));
     let bar = output::progress(common.quiet, options.poses, "closing the hand");
     let found = measure
         .synthesize_watched(&hand, &poses, &|| bar.inc(1))

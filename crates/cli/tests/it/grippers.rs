@@ -80,3 +80,42 @@ fn a_built_in_gripper_writes_all_its_joints_and_its_contact_model() {
     let line: Value = serde_json::from_str(&stdout(&moduli(here, &points))).unwrap();
     assert_eq!(line["closed"], 0);
 }
+
+#[test]
+fn hands_stay_above_the_support_unless_there_is_none() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    fitted(here, "egg", [0.035, 0.030, 0.045], CENTRE);
+    let run = |more: &[&str]| -> Value {
+        let mut arguments = vec!["synthesize", "egg.shape", "--poses", "60", "-o", "out"];
+        arguments.extend(more);
+        stdout(&moduli(here, &arguments));
+        read(here, "out/grasps.json")
+    };
+    // The foot of the object, 45 mm below its centre.
+    let auto = run(&[]);
+    let support = &auto["object"]["support"];
+    assert_eq!(support["normal"], serde_json::json!([0.0, 0.0, 1.0]));
+    let foot = support["offset_m"].as_f64().unwrap();
+    assert!((foot - (CENTRE[2] - 0.045)).abs() < 5e-4, "{foot}");
+    let grasps = auto["grasps"].as_array().unwrap();
+    assert!(!grasps.is_empty());
+    for grasp in grasps {
+        let hand = &grasp["hand"];
+        assert!(hand["clearance_to_support_m"].as_f64().unwrap() >= 3e-3);
+        assert!(hand["approach_direction"][2].as_f64().unwrap() <= 1e-9);
+    }
+    // Lower by 20 cm, the plane is in nobody's way.
+    let given = run(&["--support", "0,0,2,0.09"]);
+    let offset = given["object"]["support"]["offset_m"].as_f64().unwrap();
+    assert!((offset + 0.045).abs() < 1e-12, "{offset}");
+    let none = run(&["--support", "none"]);
+    assert!(none["object"]["support"].is_null());
+    assert!(none["grasps"][0]["hand"]["clearance_to_support_m"].is_null());
+    let count = |file: &Value| file["grasps"].as_array().unwrap().len();
+    assert_eq!(count(&given), count(&none));
+    for bad in ["0,0,0,1", "table"] {
+        let arguments = ["synthesize", "egg.shape", "--support", bad, "-o", "x"];
+        refused(&moduli(here, &arguments), 2, &["--support", bad]);
+    }
+}

@@ -25,7 +25,7 @@ pub enum GeometryError {
 }
 
 #[derive(Debug, Clone)]
-enum Form {
+pub(super) enum Form {
     Cuboid(Cuboid),
     /// Along y, as parry has it.
     Cylinder(Cylinder),
@@ -46,8 +46,8 @@ pub(crate) struct PointDistance {
 
 /// A convex hull about a point inside it.
 #[derive(Debug, Clone)]
-struct Hull {
-    body: ConvexPolyhedron,
+pub(super) struct Hull {
+    pub(super) body: ConvexPolyhedron,
     /// Outward unit normals of planes that touch the hull, its faces among them, and their heights
     /// over that point.
     faces: Vec<(Vector3<f64>, f64)>,
@@ -108,7 +108,7 @@ fn support_of(body: &ConvexPolyhedron, n: &Vector3<f64>) -> f64 {
 #[derive(Debug, Clone)]
 pub(crate) struct ConvexPiece {
     pub(crate) link_from_piece: Isometry3<f64>,
-    form: Form,
+    pub(super) form: Form,
     /// Radius of a sphere about the origin of the piece that holds it.
     pub(crate) radius: f64,
 }

@@ -6,8 +6,10 @@ use shape::{RadialField, RadialShape, Surface};
 use sph::Direction;
 use sph::direction::tangent_frame;
 
+use super::PoseSampling;
 use super::obstacles::Obstacles;
 use crate::hand::{Hand, Jaws};
+use crate::support::Support;
 
 /// Pairs tried for one pose.
 const TRIES: usize = 100;
@@ -33,12 +35,15 @@ pub(super) struct Pairs<'a> {
     jaws: Vec<Vec<Station<'a>>>,
     cone: f64,
     least_height: f64,
+    support: Option<(Support, f64)>,
     radius: f64,
 }
 
 /// The jaws somewhere on their way.
 struct Station<'a> {
     jaws: Jaws,
+    /// Poses of all links, palm frame.
+    links: Vec<Isometry3<f64>>,
     obstacles: Obstacles<'a>,
 }
 
@@ -46,9 +51,8 @@ impl<'a> Pairs<'a> {
     pub(super) fn new(
         surface: &RadialShape,
         hand: &'a Hand,
-        preshapes: &[usize],
+        sampling: &PoseSampling,
         cone: f64,
-        least_height: f64,
     ) -> Self {
         let field = RadialField::new(surface.clone());
         let directions = sph::direction::even_directions(POINTS);
@@ -56,9 +60,14 @@ impl<'a> Pairs<'a> {
             radius: surface.radius_bounds().1,
             points: directions.iter().map(|d| field.point(d)).collect(),
             field,
-            jaws: preshapes.iter().map(|&p| stations(hand, p)).collect(),
+            jaws: sampling
+                .preshapes
+                .iter()
+                .map(|&p| stations(hand, p))
+                .collect(),
             cone,
-            least_height,
+            least_height: sampling.least_height,
+            support: sampling.support,
         }
     }
 
@@ -85,9 +94,9 @@ impl<'a> Pairs<'a> {
                 let shift = rng.random_range(-SHIFT..=SHIFT);
                 let pose = self.about(hand, &closed.jaws, (&first, &second), roll, shift);
                 let clear = |pose: &Isometry3<f64>| {
-                    let seen = pose.inverse();
-                    let meets = |s: &Station<'_>| s.obstacles.meet(&seen, &self.points);
-                    !meets(closed) && !meets(open)
+                    let stations = [closed, open];
+                    stations.iter().all(|s| self.is_above(hand, s, pose))
+                        && !stations.iter().any(|s| self.meets(s, pose))
                 };
                 if let Some(pose) = pose.filter(clear) {
                     return Some((which, pose));
@@ -95,6 +104,17 @@ impl<'a> Pairs<'a> {
             }
         }
         None
+    }
+
+    fn meets(&self, station: &Station<'_>, pose: &Isometry3<f64>) -> bool {
+        station.obstacles.meet(&pose.inverse(), &self.points)
+    }
+
+    fn is_above(&self, hand: &Hand, station: &Station<'_>, pose: &Isometry3<f64>) -> bool {
+        self.support.is_none_or(|(support, clearance)| {
+            let lowest = hand.lowest_link(&support.seen_from(pose), &station.links);
+            lowest.is_none_or(|(_, height)| height >= clearance)
+        })
     }
 
     /// Two points not farther apart than `widest`, the line between them in both friction cones.
@@ -165,7 +185,10 @@ impl<'a> Pairs<'a> {
         let axis = UnitVector3::try_new(first - second, 1e-9)?;
         let (a, b) = tangent_frame(&axis);
         let approach = a * roll.cos() + b * roll.sin();
-        if -approach.z < self.least_height - 1e-9 {
+        let up = self
+            .support
+            .map_or(Vector3::z(), |(s, _)| s.normal.into_inner());
+        if -approach.dot(&up) < self.least_height - 1e-9 {
             return None;
         }
         let middle = nalgebra::center(first, second) + approach * shift;
@@ -191,7 +214,12 @@ fn stations(hand: &Hand, preshape: usize) -> Vec<Station<'_>> {
         // Open tips are clear of the surface; closed ones touch it.
         let of_tips = (k == 0).then_some(0.0);
         let obstacles = Obstacles::new(hand, &jaws.joints, CLEARANCE, of_tips)?;
-        Some(Station { jaws, obstacles })
+        let links = hand.model().root_from_links(&jaws.joints).ok()?;
+        Some(Station {
+            jaws,
+            links,
+            obstacles,
+        })
     };
     jaws.into_iter().enumerate().filter_map(station).collect()
 }

@@ -169,6 +169,7 @@ impl<'a> Problem<'a> {
             let poses = self.links(x);
             let mut all = self.tips(&poses, task, FACING_WEIGHTS.1);
             self.push_clearances(&poses, task, near, &mut all);
+            self.push_heights(&poses, task, &mut all);
             DVector::from_vec(all)
         });
         self.misfit(x, task)
@@ -243,6 +244,19 @@ impl<'a> Problem<'a> {
                 let gap = self.object.link_gap(shape, &poses[l], precision);
                 CLEARANCE_WEIGHT * (least - gap.lower).max(0.0)
             });
+        }
+    }
+
+    /// What each link lacks of its height above the support.
+    fn push_heights(&self, poses: &[Isometry3<f64>], task: &Task<'_>, all: &mut Vec<f64>) {
+        let rules = &task.params.rules;
+        let Some(support) = &rules.support else {
+            return;
+        };
+        let least = rules.support_clearance + CLEARANCE_MARGIN;
+        for (link, pose) in poses.iter().enumerate() {
+            let height = self.hand.link_height(link, support, pose);
+            all.extend(height.map(|h| CLEARANCE_WEIGHT * (least - h).max(0.0)));
         }
     }
 

@@ -9,6 +9,7 @@ use rand::{Rng, RngExt};
 use super::HandState;
 use super::problem::{Problem, state};
 use crate::alignment::{DEPTH, align, contact_points};
+use crate::support::Support;
 
 /// Half-closed hands among which a start is chosen.
 const SHAPES: usize = 24;
@@ -64,6 +65,7 @@ impl Problem<'_> {
     pub(super) fn approaching_start<R: Rng + ?Sized>(
         &self,
         wanted: &[Contact],
+        support: Option<&Support>,
         rng: &mut R,
     ) -> Start {
         let hand = self.hand;
@@ -84,7 +86,13 @@ impl Problem<'_> {
             .unwrap_or_else(Vector3::z);
         let side = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
         let from = UnitVector3::try_new(across * side + spread * 0.8, 1e-6);
-        let from = from.unwrap_or(Vector3::z_axis());
+        let mut from = from.unwrap_or(Vector3::z_axis());
+        if let Some(support) = support
+            && support.normal.dot(&from) < 0.0
+        {
+            // From above.
+            from = -from;
+        }
         let roll = rng.random_range(0.0..TAU);
         let (low, high) = hand.standoff;
         let distance = rng.random_range(low - 0.2 * low.abs()..=high + 0.1 * high.abs());

@@ -1,5 +1,6 @@
 //! The tests of `hand` that use it from outside, as one program.
 
+mod above_support;
 mod check;
 mod closing;
 mod common;

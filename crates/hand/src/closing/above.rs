@@ -1,0 +1,57 @@
+//! Whether the links stay above the plane on which the object stands.
+
+use nalgebra::Isometry3;
+
+use super::{ClosedHand, ClosingRules, Rejection};
+use crate::hand::{FingerGroup, Hand};
+
+/// Stations between the start and the end of a group's way at which its links are looked at.
+const STATIONS: usize = 12;
+
+/// Every link is above the plane by the clearance.
+pub(super) fn check_all(
+    hand: &Hand,
+    poses: &[Isometry3<f64>],
+    rules: &ClosingRules,
+) -> Result<(), Rejection> {
+    let lowest = rules.support.and_then(|s| hand.lowest_link(&s, poses));
+    match lowest {
+        Some((link, height)) if !(height >= rules.support_clearance) => {
+            Err(Rejection::BelowSupport { link })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The links of a group are above the plane on their way from the joints before it closed.
+///
+/// The way is that of the joints alone: where the palm has given way it is seen from where the palm
+/// ended.
+pub(super) fn check_way(
+    hand: &Hand,
+    group: &FingerGroup,
+    before: &[f64],
+    state: &ClosedHand,
+    rules: &ClosingRules,
+) -> Result<(), Rejection> {
+    let Some(support) = rules.support else {
+        return Ok(());
+    };
+    let mut joints = state.joints.clone();
+    let mut poses = state.object_from_links.clone();
+    for station in 0..=STATIONS {
+        let share = station as f64 / STATIONS as f64;
+        for &(driven, _) in &group.closing {
+            joints[driven] = before[driven] + share * (state.joints[driven] - before[driven]);
+        }
+        let links = group.moving_links.iter().copied();
+        hand.model.update_links(&joints, links, &mut poses);
+        for &link in &group.moving_links {
+            let height = hand.link_height(link, &support, &poses[link]);
+            if height.is_some_and(|h| !(h >= rules.support_clearance)) {
+                return Err(Rejection::BelowSupport { link });
+            }
+        }
+    }
+    Ok(())
+}
