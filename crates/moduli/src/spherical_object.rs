@@ -15,8 +15,8 @@ use crate::records::StoredShapeError;
 /// An object whose surface is f = (x, y, z): S² → R³, proved an immersion.
 ///
 /// Such a surface need not be star-shaped. Grasps are found on [`Object`](crate::Object)s, whose
-/// surface is radial; this one can be evaluated, meshed and stored. That it does not cut itself is
-/// not proved.
+/// surface is radial; this one can be evaluated, meshed and stored. Whether it touches itself is
+/// answered by [`SphericalShape::embedding`].
 #[derive(Clone, Debug)]
 pub struct SphericalObject {
     name: String,

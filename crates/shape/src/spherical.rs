@@ -5,6 +5,7 @@ use sph::grid::{GridValues, RingGrid};
 use sph::{Basis, Coefficients, Direction, Jet};
 
 use crate::immersion::{self, Immersion, SphericalError};
+use crate::injectivity::{self, Embedding};
 use crate::mass::{self, MassProperties};
 use crate::normals::grid_directions;
 use crate::radial::RadialShape;
@@ -13,8 +14,8 @@ use crate::triangle_mesh::TriangleMesh;
 
 /// A proved immersion f = (x, y, z): S² → R³ with coordinates of degree ≤ L (the paper's M^sph).
 ///
-/// Coordinates in metres, in the centred frame; the normal f_u × f_v points outward. That the
-/// surface does not cut itself is not proved, as it is not for the paper's either.
+/// Coordinates in metres, in the centred frame; the normal f_u × f_v points outward. Whether the
+/// surface touches itself is another question, which [`SphericalShape::embedding`] answers.
 #[derive(Clone, Debug)]
 pub struct SphericalShape {
     coordinates: [Coefficients; 3],
@@ -77,6 +78,11 @@ impl SphericalShape {
     /// The proof that the surface is an immersion.
     pub fn immersion(&self) -> Immersion {
         self.immersion
+    }
+
+    /// Tries to prove that the surface does not touch itself; about a second at L = 50.
+    pub fn embedding(&self) -> Embedding {
+        injectivity::certify(&self.coordinates)
     }
 
     /// Volume, centroid and inertia of the enclosed solid.

@@ -10,6 +10,7 @@ use sphere_map::{
 
 use crate::crossing::crossing;
 use crate::immersion::SphericalError;
+use crate::injectivity::Embedding;
 use crate::point_cloud::PointCloud;
 use crate::spherical::SphericalShape;
 use crate::spherical_rows::{Equations, Rows, reproject};
@@ -27,6 +28,8 @@ const GAIN: f64 = 0.01;
 /// The maps that are tried: weight of areas and barrier. The second pair is for clouds for which the
 /// first gives nothing.
 const MAPS: [[(f64, f64); 2]; 2] = [[(3.0, 0.3), (3.0, 0.05)], [(10.0, 0.05), (1.0, 0.05)]];
+/// So many surfaces of a continuation are tried for a proof.
+const PROOFS: usize = 3;
 /// Anchors move to places of the wrap within so many spacings.
 const REACH: f64 = 2.0;
 
@@ -83,16 +86,24 @@ pub struct SphericalCloudFit {
     pub surface_max: f64,
     /// Number of points that the surface was fitted to.
     pub points: usize,
+    /// Whether the surface is proved not to touch itself.
+    pub embedding: Embedding,
     /// Handles and tunnels that were closed, in the frame of the cloud.
     pub closed_holes: Vec<ClosedHole>,
 }
 
 /// A surface on the way.
+#[derive(Clone)]
 struct Candidate {
     coordinates: [Coefficients; 3],
     lambda: f64,
     rms: f64,
     max: f64,
+}
+
+/// The surfaces of one continuation, the most detailed last, and the number of points.
+struct Continuation {
+    candidates: Vec<Candidate>,
     points: usize,
 }
 
@@ -129,44 +140,58 @@ pub fn fit_spherical_cloud(
         settings: *settings,
     };
     let mut error = SphericalCloudError::Regression(RegressionError::Empty);
+    let mut immersed = None;
     for maps in MAPS {
-        let tried: Vec<Result<Candidate, SphericalCloudError>> =
+        let tried: Vec<Result<Continuation, SphericalCloudError>> =
             maps.par_iter().map(|map| work.over_map(*map)).collect();
         let mut found = Vec::new();
         for result in tried {
             match result {
-                Ok(candidate) => found.push(candidate),
+                Ok(continuation) => {
+                    let last = continuation.candidates.into_iter().rev().take(PROOFS);
+                    found.extend(last.map(|candidate| (candidate, continuation.points)));
+                }
                 Err(e) => error = e,
             }
         }
-        found.sort_by(|a, b| a.rms.total_cmp(&b.rms));
-        for candidate in found {
-            let [x, y, z] = candidate.coordinates;
-            match SphericalShape::new(x, y, z) {
-                Ok(shape) => {
-                    return Ok(SphericalCloudFit {
-                        shape,
-                        centre_in_cloud: work.centre,
-                        lambda: candidate.lambda,
-                        surface_rms: candidate.rms,
-                        surface_max: candidate.max,
-                        points: candidate.points,
-                        closed_holes: wrap.closed_holes,
-                    });
-                }
+        found.sort_by(|a, b| a.0.rms.total_cmp(&b.0.rms));
+        for (candidate, points) in found {
+            match work.proved(candidate, points) {
+                Ok(fit) if matches!(fit.embedding, Embedding::Proved { .. }) => return Ok(fit),
+                Ok(fit) => immersed = immersed.or(Some(fit)),
                 Err(e) => error = e.into(),
             }
         }
     }
-    Err(error)
+    immersed.ok_or(error)
 }
 
 impl Work<'_> {
-    /// The best fit over one map.
+    /// A candidate with what can be proved about it.
+    fn proved(
+        &self,
+        candidate: Candidate,
+        points: usize,
+    ) -> Result<SphericalCloudFit, SphericalError> {
+        let [x, y, z] = candidate.coordinates;
+        let shape = SphericalShape::new(x, y, z)?;
+        Ok(SphericalCloudFit {
+            embedding: shape.embedding(),
+            shape,
+            centre_in_cloud: self.centre,
+            lambda: candidate.lambda,
+            surface_rms: candidate.rms,
+            surface_max: candidate.max,
+            points,
+            closed_holes: self.wrap.closed_holes.clone(),
+        })
+    }
+
+    /// The fits over one map.
     fn over_map(
         &self,
         (area_weight, barrier): (f64, f64),
-    ) -> Result<Candidate, SphericalCloudError> {
+    ) -> Result<Continuation, SphericalCloudError> {
         let map = MapSettings {
             area_weight,
             barrier,
@@ -206,42 +231,48 @@ impl Work<'_> {
         &self,
         rows: &Rows,
         start: [Coefficients; 3],
-        mut lambda: f64,
-    ) -> Result<Candidate, SphericalCloudError> {
+        lambda: f64,
+    ) -> Result<Continuation, SphericalCloudError> {
         let limit = REACH * self.wrap.spacing;
-        let (mut directions, mut gaps) = reproject(&start, rows);
-        let mut kept = start;
-        let mut rms = root_mean_square(&gaps);
+        let measured = |coordinates, lambda, gaps: &[f64]| Candidate {
+            coordinates,
+            lambda,
+            rms: root_mean_square(gaps),
+            max: gaps.iter().fold(0.0, |a: f64, b| a.max(*b)),
+        };
+        let (mut directions, gaps) = reproject(&start, rows);
+        let mut kept = measured(start, lambda, &gaps);
+        let mut candidates = Vec::new();
         let mut factor = if self.settings.lambda.is_some() {
             1.0
         } else {
             FIRST_FACTOR
         };
         for _ in 0..ROUNDS {
-            let along = rows.along(&kept, directions.clone(), &self.tree, &self.centre, limit);
-            let smaller = (lambda * factor).max(LEAST_LAMBDA.min(lambda));
-            let next = Equations::new(&along, self.settings.degree)?.solve(smaller, Some(&kept))?;
-            let found = reproject(&next, &along);
-            let found_rms = root_mean_square(&found.1);
-            if !(found_rms < rms) || crossing(&next).is_some() {
+            let before = &kept.coordinates;
+            let along = rows.along(before, directions.clone(), &self.tree, &self.centre, limit);
+            let smaller = (kept.lambda * factor).max(LEAST_LAMBDA.min(kept.lambda));
+            let equations = Equations::new(&along, self.settings.degree)?;
+            let next = equations.solve(smaller, Some(before))?;
+            let (moved, gaps) = reproject(&next, &along);
+            let next = measured(next, smaller, &gaps);
+            if !(next.rms < kept.rms) || crossing(&next.coordinates).is_some() {
                 factor = factor.sqrt();
                 if factor > LAST_FACTOR {
                     break;
                 }
                 continue;
             }
-            let gain = 1.0 - found_rms / rms;
-            (kept, lambda, rms) = (next, smaller, found_rms);
-            (directions, gaps) = found;
+            directions = moved;
+            let gain = 1.0 - next.rms / kept.rms;
+            candidates.push(std::mem::replace(&mut kept, next));
             if gain < GAIN {
                 break;
             }
         }
-        Ok(Candidate {
-            coordinates: kept,
-            lambda,
-            rms,
-            max: gaps.iter().fold(0.0, |a: f64, b| a.max(*b)),
+        candidates.push(kept);
+        Ok(Continuation {
+            candidates,
             points: rows.points,
         })
     }

@@ -92,6 +92,7 @@ fn a_cloud_without_directions_is_wrapped_and_fitted() {
     let line: serde_json::Value = serde_json::from_str(&line).unwrap();
     assert_eq!(line["model"], "spherical");
     assert_eq!(line["in_m_sph"], true);
+    assert_eq!(line["embedding"], "proved");
     assert_eq!(line["closed_holes"].as_array().unwrap().len(), 0);
     assert!(line["surface_rms_m"].as_f64().unwrap() < 3e-4, "{line}");
     let ball = 4.0 / 3.0 * std::f64::consts::PI * 0.012 * 0.012 * 0.07;

@@ -1,6 +1,7 @@
 //! The tests of `shape` that use it from outside, as one program.
 
 mod common;
+mod embeddings;
 mod formats;
 mod loading;
 mod mutations;

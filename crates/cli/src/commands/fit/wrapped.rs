@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use moduli::SphericalObject;
 use serde::Serialize;
-use shape::{SphericalSettings, fit_spherical_cloud};
+use shape::{Embedding, SphericalCloudFit, SphericalSettings, Surface, fit_spherical_cloud};
 
 use super::target;
 use crate::args::{Common, FitOptions};
@@ -29,6 +29,7 @@ struct WrappedLine {
     volume_m3: f64,
     closed_holes: Vec<Hole>,
     centre_m: [f64; 3],
+    warnings: Vec<String>,
     seconds: f64,
 }
 
@@ -72,6 +73,7 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<WrappedLine, 
     });
     let closed_holes = closed_holes.collect();
     let max_abs_m = fit.surface_max;
+    let (embedding, warnings) = verdict(&fit);
     let object = SphericalObject::from_cloud_fit(&input::stem(path), fit);
     let seconds = start.elapsed().as_secs_f64();
     if let Some(target) = target(path, options) {
@@ -92,13 +94,31 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<WrappedLine, 
         surface_rms_m: object.rms(),
         // A map that is not proved an immersion is refused by the fit.
         in_m_sph: true,
-        embedding: "immersion",
+        embedding,
         area_element_certified_m2: shape.immersion().lower,
         volume_m3: shape.mass_properties().volume,
         closed_holes,
         centre_m: object.frame().centre_in_cloud().into(),
+        warnings,
         seconds,
     })
+}
+
+/// What is proved, and where the proof failed.
+fn verdict(fit: &SphericalCloudFit) -> (&'static str, Vec<String>) {
+    let (first, second, gap) = match fit.embedding {
+        Embedding::Proved { .. } => return ("proved", Vec::new()),
+        Embedding::Undecided { first, second, gap } => (first, second, gap),
+    };
+    let [a, b] = [first, second].map(|p| {
+        let p = fit.centre_in_cloud + fit.shape.point(&p).coords;
+        format!("({:.4}, {:.4}, {:.4})", p.x, p.y, p.z)
+    });
+    let warning = format!(
+        "not proved that the surface does not touch itself: {:.2e} m between {a} and {b} m; a larger --lambda or a lower --degree may help",
+        gap
+    );
+    ("immersion", vec![warning])
 }
 
 fn say(path: &Path, line: &WrappedLine) {
@@ -117,6 +137,9 @@ fn say(path: &Path, line: &WrappedLine) {
             "  {} points are hidden from outside or far from the surface and were left out",
             line.points - line.points_fitted
         ));
+    }
+    for warning in &line.warnings {
+        output::warn(format!("{}: {warning}", path.display()));
     }
     for hole in &line.closed_holes {
         let [x, y, z] = hole.centre_m;
