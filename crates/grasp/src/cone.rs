@@ -211,6 +211,10 @@ impl Support for RoundSource<'_> {
         touching::touching(self.0, normal, shares)
     }
 
+    fn beside(&self, normal: &V6, shares: &[(u32, V6, f64)]) -> Option<Touching> {
+        touching::beside(self.0, normal, shares)
+    }
+
     fn cap(&self, touching: &Touching, level: f64) -> f64 {
         cap::cap(self.0, touching, level)
     }

@@ -9,8 +9,9 @@ use crate::hull::plane::V6;
 use crate::hull::support::{SpaceMap, Symmetries};
 use nalgebra::{Matrix3, Vector3};
 
-/// Contacts further than this from their images, relative to their size, are not symmetric.
-const APART: f64 = 1e-11;
+/// Contacts further than this from their images, relative to their size, are not symmetric. What the
+/// images are off by costs the lower end of a quality as much.
+const APART: f64 = 1e-6;
 /// More maps than this are not looked for.
 const MOST: usize = 200;
 
@@ -18,6 +19,7 @@ const MOST: usize = 200;
 pub(super) fn symmetries(cones: &[Cone], out: &mut Symmetries) {
     out.maps.clear();
     out.error = 0.0;
+    out.slack = 0.0;
     if cones.len() > 16 {
         return;
     }
@@ -30,7 +32,7 @@ pub(super) fn symmetries(cones: &[Cone], out: &mut Symmetries) {
     for first in 0..cones.len() {
         for second in 0..cones.len() {
             for sign in [1.0, -1.0] {
-                let map = frame.onto(cones, first, second, sign);
+                let map = frame.onto(cones, size, [first, second], sign);
                 let Some(map) = map.and_then(|m| permutes(cones, m, size, &mut out.error)) else {
                     continue;
                 };
@@ -40,8 +42,9 @@ pub(super) fn symmetries(cones: &[Cone], out: &mut Symmetries) {
             }
         }
     }
-    if is_group(&maps, cones.len()) {
-        let moves = |m: &&SpaceMap| (m.matrix - Matrix3::identity()).norm() > 1e-6;
+    if let Some(slack) = products(&mut maps, cones.len()) {
+        out.slack = slack;
+        let moves = |m: &&SpaceMap| (m.matrix - Matrix3::identity()).norm() > 1e-3;
         let moving = maps.iter().filter(moves);
         out.maps.extend(moving.map(|m| on_wrenches(&m.matrix)));
     }
@@ -60,8 +63,8 @@ fn vector(cone: &Cone, arm: bool, size: f64) -> Vector3<f64> {
 }
 
 fn basis(x: Vector3<f64>, y: Vector3<f64>, sign: f64) -> Option<Matrix3<f64>> {
-    let x = x.try_normalize(1e-3)?;
-    let y = (y - x * x.dot(&y)).try_normalize(1e-3)?;
+    let x = x.try_normalize(0.03)?;
+    let y = (y - x * x.dot(&y)).try_normalize(0.03)?;
     Some(Matrix3::from_columns(&[x, y, x.cross(&y) * sign]))
 }
 
@@ -84,8 +87,13 @@ impl Frame {
         None
     }
 
-    fn onto(&self, cones: &[Cone], first: usize, second: usize, sign: f64) -> Option<Matrix3<f64>> {
-        let size = cones.iter().map(|c| c.arm.norm()).fold(0.0, f64::max);
+    fn onto(
+        &self,
+        cones: &[Cone],
+        size: f64,
+        [first, second]: [usize; 2],
+        sign: f64,
+    ) -> Option<Matrix3<f64>> {
         let [one, other] = self.of;
         if (one.0 == other.0) != (first == second) {
             return None;
@@ -93,7 +101,7 @@ impl Frame {
         let x = vector(&cones[first], one.1, size);
         let y = vector(&cones[second], other.1, size);
         let from = vector(&cones[one.0], one.1, size).dot(&vector(&cones[other.0], other.1, size));
-        if (x.dot(&y) - from).abs() > 1e-9 {
+        if (x.dot(&y) - from).abs() > 4.0 * APART {
             return None;
         }
         Some(basis(x, y, sign)? * self.basis.transpose())
@@ -123,25 +131,40 @@ fn permutes(cones: &[Cone], matrix: Matrix3<f64>, size: f64, error: &mut f64) ->
         worst = worst.max(2.0 * (turn + force * moved / length) + 2.0 * cone.rounding);
     }
     *error = error.max(worst);
-    Some(SpaceMap { matrix, image })
+    let mirrors = matrix.determinant() < 0.0;
+    Some(SpaceMap {
+        matrix,
+        image,
+        mirrors,
+    })
 }
 
 fn same(a: &SpaceMap, b: &SpaceMap) -> bool {
-    (a.matrix - b.matrix).norm() <= 1e-6
+    a.key() == b.key()
 }
 
-/// Whether all products are there too.
-fn is_group(maps: &[SpaceMap], count: usize) -> bool {
-    maps.iter().all(|a| {
-        maps.iter().all(|b| {
-            let det = a.matrix.determinant() * b.matrix.determinant();
-            maps.iter().any(|c| {
-                c.matrix.determinant() * det > 0.0
-                    && (0..count).all(|k| c.image[k] == a.image[b.image[k] as usize])
-                    && (c.matrix - a.matrix * b.matrix).norm() <= 1e-6
-            })
-        })
-    })
+/// How far any product of two maps is from a map, None where one is missing: then they are no group.
+fn products(maps: &mut [SpaceMap], count: usize) -> Option<f64> {
+    maps.sort_unstable_by_key(SpaceMap::key);
+    let mut worst = 0.0_f64;
+    for a in &*maps {
+        for b in &*maps {
+            let mut image = [u8::MAX; 16];
+            for (onto, &middle) in image.iter_mut().zip(&b.image[..count]) {
+                *onto = a.image[middle as usize];
+            }
+            let product = SpaceMap {
+                matrix: a.matrix * b.matrix,
+                image,
+                mirrors: a.mirrors != b.mirrors,
+            };
+            let at = maps
+                .binary_search_by_key(&product.key(), SpaceMap::key)
+                .ok()?;
+            worst = worst.max((maps[at].matrix - product.matrix).norm());
+        }
+    }
+    Some(worst)
 }
 
 /// R on forces and det R · R on torques.

@@ -18,6 +18,11 @@ const SIZE: usize = 7 + 4 * MOST_SHARES;
 /// Contacts that a facet of six points can have.
 const MOST_SHARES: usize = 6;
 const STEPS: usize = 24;
+/// Steps beside a minimum, and their damping: of weights relative to the longest wrench, of the
+/// direction to the offset.
+const SLIDES: usize = 4;
+const WEIGHTS: f64 = 1e-6;
+const DAMPED: f64 = 0.2;
 /// A mean position inside the ellipsoid, rather than on its rim, means that all of it takes part.
 const RIM: f64 = 0.98;
 /// Keeps the rows of dependent weights solvable, relative to the size of the wrenches.
@@ -55,10 +60,27 @@ struct Face<'a> {
 /// lead to one.
 pub(super) fn touching(cones: &[Cone], normal: &V6, points: &[(u32, V6, f64)]) -> Option<Touching> {
     let first = Face::near(cones, normal, points)?;
-    let found = [0.0, 0.1]
+    let found = [[0.0; 2], [0.1, 0.0], [0.1, 1.0]]
         .into_iter()
         .find_map(|damping| first.clone().solve(normal, damping))?;
     Some(balanced(cones, &found).unwrap_or(found))
+}
+
+/// A face near a facet that is nearly one that a ball touches: stationary in the directions in which
+/// the support function curves, and near the facet's normal in those in which it does not.
+///
+/// Around a minimum in a long valley of the support function no proof at the minimum reaches far along
+/// the valley; proofs at points beside it do.
+pub(super) fn beside(cones: &[Cone], normal: &V6, points: &[(u32, V6, f64)]) -> Option<Touching> {
+    let mut face = Face::near(cones, normal, points)?;
+    for _ in 0..SLIDES {
+        let mut step = [0.0; SIZE];
+        let damping = [WEIGHTS * face.unit, DAMPED * face.x[6]];
+        face.newton_step(&mut step, damping)?;
+        face.take(&step);
+        face.drop_negative();
+    }
+    face.accept(normal)
 }
 
 impl<'a> Face<'a> {
@@ -117,7 +139,7 @@ impl<'a> Face<'a> {
     }
 
     /// The face after Newton's steps, without the contacts whose weights become negative.
-    fn solve(mut self, normal: &V6, damping: f64) -> Option<Touching> {
+    fn solve(mut self, normal: &V6, damping: [f64; 2]) -> Option<Touching> {
         for _ in 0..MOST_SHARES {
             self.converge(damping)?;
             if !self.drop_negative() {
@@ -129,19 +151,17 @@ impl<'a> Face<'a> {
 
     /// Newton's steps until they are rounding; None where they do not become so.
     ///
-    /// `damping` keeps the weights of contacts whose points depend on each other from running away:
-    /// it is in proportion to the last step, so that the steps still end fast.
-    fn converge(&mut self, damping: f64) -> Option<()> {
+    /// `damping` keeps the weights of contacts whose points depend on each other from running away, and
+    /// the direction where it can slide along a curve of minima: it is in proportion to the last step,
+    /// so that the steps still end fast.
+    fn converge(&mut self, damping: [f64; 2]) -> Option<()> {
         let mut last = f64::INFINITY;
         for round in 0..STEPS {
             let mut step = [0.0; SIZE];
-            let regular = self.unit * (REGULAR + damping * last.min(0.1));
+            let [by_weights, by_direction] = damping.map(|d| self.unit * d * last.min(0.1));
+            let regular = [by_weights + self.unit * REGULAR, by_direction];
             let length = self.newton_step(&mut step, regular)?;
-            for (x, s) in self.x.iter_mut().zip(&step) {
-                *x -= s;
-            }
-            let size = norm(&self.direction());
-            self.x[..6].iter_mut().for_each(|x| *x /= size);
+            self.take(&step);
             if length <= 1e-12 || (length <= 1e-9 && length >= last) {
                 return Some(());
             }
@@ -151,6 +171,15 @@ impl<'a> Face<'a> {
             last = length;
         }
         None
+    }
+
+    /// Takes a step and makes the direction a unit vector again.
+    fn take(&mut self, step: &[f64; SIZE]) {
+        for (x, s) in self.x.iter_mut().zip(step) {
+            *x -= s;
+        }
+        let size = norm(&self.direction());
+        self.x[..6].iter_mut().for_each(|x| *x /= size);
     }
 
     /// Leaves out the contact with the most negative weight; false if there is none.
@@ -192,13 +221,14 @@ impl<'a> Face<'a> {
             })
     }
 
-    /// The step of all unknowns; returns how long it is, wrenches measured by the longest.
-    fn newton_step(&self, step: &mut [f64; SIZE], regular: f64) -> Option<f64> {
+    /// The step of all unknowns; returns how long it is, wrenches measured by the longest. `regular` and
+    /// `bent` damp the weights and the direction.
+    fn newton_step(&self, step: &mut [f64; SIZE], [regular, bent]: [f64; 2]) -> Option<f64> {
         let (u, offset, n) = (self.direction(), self.x[6], self.size);
         let mut a = [[0.0; SIZE]; SIZE];
         for k in 0..6 {
             step[k] = -offset * u[k];
-            a[k][k] = -offset;
+            a[k][k] = bent - offset;
             a[k][6] = -u[k];
             a[6][k] = 2.0 * u[k];
         }

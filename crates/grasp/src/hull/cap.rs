@@ -36,6 +36,8 @@ impl Touching {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Cap {
     pub(crate) touching: Touching,
+    /// Whether a ball touches the hull at the face, and not only nearly so.
+    pub(crate) touches: bool,
     /// The angle of the cap.
     pub(crate) angle: f64,
     pub(crate) level: f64,

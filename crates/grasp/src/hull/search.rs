@@ -12,6 +12,7 @@
 //! direction u lies within arccos(d/r) of the normal of a facet with d < r. If these caps all lie in
 //! caps where h ≥ r is proved, no such u exists and r bounds the ball's radius from below.
 
+mod domain;
 mod queue;
 mod settle;
 mod warm_start;
@@ -55,6 +56,11 @@ pub(crate) struct Search {
     queue: Queue,
     /// Half-spaces c·u ≥ 0 whose intersection meets every orbit of the symmetries.
     pub(crate) domain: Vec<V6>,
+    /// Points beyond these half-spaces, and the level up to which they bound nothing.
+    beyond: Vec<V6>,
+    beyond_level: f64,
+    /// Whether the polytope is to surround the origin with points of the set alone.
+    pub(crate) whole: bool,
     /// Facets to be looked at.
     open: Vec<u32>,
 }
@@ -75,8 +81,6 @@ const LARGE: usize = 20_000;
 const MOST_COPIES: usize = 500;
 /// Times that the facets' planes are repaired before the next tolerance is tried.
 const MOST_REPAIRS: usize = 12;
-/// Facets after which a curved hull is asked for symmetries.
-const SYMMETRIC: usize = 600;
 /// Facets after which a curved hull is not searched any further.
 const MOST_CREATED: usize = 200_000;
 
@@ -118,7 +122,6 @@ impl Search {
         } = *extent;
         let tolerance = RELATIVE_TOLERANCE * reach;
         self.caps.clear();
-        self.domain.clear();
         let mut bounds = Bounds {
             lower: 0.0,
             upper: f64::INFINITY,
@@ -134,6 +137,7 @@ impl Search {
             }
             bounds.below(dot(&direction, &source.support(&direction).0), &direction);
         }
+        self.lay_out_domain(source, reach, 0.1 * gap.max(8.0 * rounding));
         let enough = gap.max(tolerance) + 2.0 * rounding;
         let mut grown = None;
         let mut estimate: f64 = 0.0;
@@ -205,6 +209,11 @@ impl Search {
         loop {
             let end = self.grow(source, tolerance, gap, rounding, bounds);
             let proved = self.polytope.proved() - rounding - self.symmetry_error();
+            let proved = if proved > self.beyond_level {
+                proved
+            } else {
+                0.0
+            };
             bounds.lower = bounds.lower.max(proved);
             let wide = bounds.upper - gap.max(tolerance) > bounds.lower;
             rounds += 1;
@@ -248,21 +257,17 @@ impl Search {
             if self.polytope.facets[facet].covered || self.polytope.created > most {
                 return end(upper, self.polytope.worst_residual);
             }
-            if curved {
-                if self.domain.is_empty() && self.polytope.created >= SYMMETRIC && !hunt.asked {
-                    hunt.asked = true;
-                    source.symmetries(&mut self.symmetries);
-                    self.lay_out_domain(0.1 * gap.max(8.0 * rounding));
-                }
-                if self.covered(facet) || self.elsewhere(facet, bounds.level(gap)) {
-                    self.queue.put(&self.polytope, &[facet as u32]);
-                    continue;
-                }
+            if curved && (self.covered(facet) || self.elsewhere(facet, bounds.level(gap))) {
+                self.queue.put(&self.polytope, &[facet as u32]);
+                continue;
             }
-            let (point, tag) = source.support(&plane.normal);
-            let height = dot(&plane.normal, &point);
+            let (mut point, mut tag) = source.support(&plane.normal);
+            let mut height = dot(&plane.normal, &point);
             upper = upper.min(height);
             bounds.below(height, &plane.normal);
+            if let Some(farther) = self.beyond(&plane.normal, height) {
+                (point, tag, height) = farther;
+            }
             let lower = plane.offset - self.polytope.worst_residual;
             if bounds.upper <= tolerance {
                 return end(upper, self.polytope.worst_residual);

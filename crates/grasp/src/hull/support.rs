@@ -24,6 +24,11 @@ pub(crate) trait Support {
         None
     }
 
+    /// The same beside a minimum of the support function, where it hardly changes in some direction.
+    fn beside(&self, _normal: &V6, _shares: &[(u32, V6, f64)]) -> Option<Touching> {
+        None
+    }
+
     /// The largest angle around the direction of a touching face within which the support function
     /// is proved to be `level` or more; 0 where nothing is proved.
     fn cap(&self, _touching: &Touching, _level: f64) -> f64 {
@@ -36,6 +41,15 @@ pub(crate) trait Support {
 pub(crate) struct SpaceMap {
     pub(crate) matrix: nalgebra::Matrix3<f64>,
     pub(crate) image: [u8; 16],
+    /// Whether its determinant is negative.
+    pub(crate) mirrors: bool,
+}
+
+impl SpaceMap {
+    /// What tells one map of a grasp from another.
+    pub(crate) fn key(&self) -> ([u8; 16], bool) {
+        (self.image, self.mirrors)
+    }
 }
 
 /// Linear isometries of R⁶ that map a set to itself, up to an error.
@@ -47,6 +61,8 @@ pub(crate) struct Symmetries {
     pub(crate) found: Vec<SpaceMap>,
     /// How far any point of an image may be from the set.
     pub(crate) error: f64,
+    /// How far any product of two maps may be from a map.
+    pub(crate) slack: f64,
 }
 
 /// How large a set is and how exactly it is known.

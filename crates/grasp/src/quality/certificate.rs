@@ -10,7 +10,8 @@ use crate::wrench::Wrench;
 ///
 /// **Upper end.** h(`direction`) ≤ `upper`, where h(u) = max w·u over all wrenches of the grasp.
 ///
-/// **Lower end.** The `facets` are 5-simplices over `vertices`, each a wrench of the grasp. Every five
+/// **Lower end.** The `facets` are 5-simplices over `vertices`, each a wrench of the grasp, or a point
+/// −M c far beyond the half-space c·u ≥ 0 of one of the `domain`'s vectors c. Every five
 /// vertices of a facet are shared by an even number of facets, so they form a closed surface; a ray from
 /// the origin crosses it an odd number of times; and every facet has a positive least height (of its
 /// vertices along its unit normal). Then every ray from the origin meets a facet. Let h(u) < `lower` for
@@ -22,6 +23,9 @@ use crate::wrench::Wrench;
 /// - all of them have c·u < 0 for one of the `domain`'s vectors c. The grasp then has symmetries, and
 ///   every u has an image under them with c·u ≥ 0 for all c.
 ///
+/// The points −M c belong to no wrench; but they raise h in no direction with c·u ≥ 0, and in the others
+/// h is that of an image.
+///
 /// Rounding errors of the wrenches and heights are within `rounding`, which is left off both ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
@@ -31,7 +35,7 @@ pub struct Certificate {
     pub upper: f64,
     /// The unit vector along which the wrenches reach only `upper` far.
     pub direction: Wrench,
-    /// Wrenches of the grasp.
+    /// Wrenches of the grasp, and points beyond the domain.
     pub vertices: Vec<Wrench>,
     /// The closed surface around the origin; empty where `lower` is 0.
     pub facets: Vec<CertificateFacet>,

@@ -40,6 +40,13 @@ pub fn margin(model: &GraspModel<'_>, workspace: &mut Workspace) -> Result<Margi
     }
     let facet = match workspace.touching(&ball) {
         Some(touching) => touching,
+        None if !workspace.search.domain.is_empty() => {
+            // Some vertices of the nearest facet may be no wrenches: a search without symmetries.
+            workspace.search.whole = true;
+            let ball = workspace.ball(requested_gap(model.convention.edges));
+            workspace.search.whole = false;
+            closest(workspace, ball.facet)
+        }
         None => closest(workspace, ball.facet),
     };
     Ok(Margin {
@@ -64,7 +71,10 @@ pub fn near_active_facets(
     out: &mut Vec<ActiveFacet>,
 ) -> Result<(), QualityError> {
     out.clear();
-    let Margin { closed, facet, .. } = margin(model, workspace)?;
+    workspace.search.whole = true;
+    let found = margin(model, workspace);
+    workspace.search.whole = false;
+    let Margin { closed, facet, .. } = found?;
     if !closed {
         return Ok(());
     }

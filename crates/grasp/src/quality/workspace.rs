@@ -257,7 +257,8 @@ impl Workspace {
         let normal = polytope.facets[ball.facet].plane.normal;
         let shares = polytope.shares(ball.facet);
         let here = shares.and_then(|s| RoundSource(&self.cones).touching(&normal, &s));
-        let caps = self.search.caps.iter().map(|cap| cap.touching);
+        let caps = self.search.caps.iter().filter(|cap| cap.touches);
+        let caps = caps.map(|cap| cap.touching);
         let nearest = caps
             .chain(here)
             .filter(|t| (ball.lower..=ball.upper).contains(&t.offset))
