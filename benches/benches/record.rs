@@ -18,6 +18,7 @@ fn bench(criterion: &mut Criterion) {
                 lambda: 1e-3,
                 rms_m: 1e-4,
                 points: 25_000,
+                notes: record::ShapeNotes::default(),
             },
             grasps: Vec::new(),
         })

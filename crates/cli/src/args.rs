@@ -3,6 +3,7 @@
 mod grasps;
 mod hands;
 mod library;
+mod scene;
 mod shapes;
 mod support;
 
@@ -20,6 +21,7 @@ pub(crate) use hands::{
 pub(crate) use library::{
     LibraryAddOptions, LibraryCommand, LibraryListOptions, LibraryRemoveOptions,
 };
+pub(crate) use scene::SceneOptions;
 pub(crate) use shapes::{
     DistanceOptions, EvalOptions, FitOptions, InfoOptions, MeshOptions, Model,
 };
@@ -163,6 +165,8 @@ pub(crate) struct CloudOptions {
     /// radians, disappear; 0.001 rounds edges.
     #[arg(long, value_name = "SIGMA", allow_negative_numbers = true)]
     pub(crate) heat: Option<f64>,
+    #[command(flatten)]
+    pub(crate) scene: SceneOptions,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -3,15 +3,16 @@
 use std::path::Path;
 
 use grasp::{Convention, Edges};
-use moduli::{Object, SphericalObject};
+use moduli::{Object, Reconstruction, ReconstructionSettings, SphericalObject, reconstruct};
 use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use record::{EnvelopeError, GraspsFile, Kind, ShapeRecord, SphericalRecord, envelope};
 use run::npy::Table;
 use shape::io::{Loaded, Warning};
-use shape::{Fit, FitError, FitSettings, PointCloud};
+use shape::{FitError, FitSettings, PointCloud, SceneError};
 use sph::Direction;
+use sph::regression::RegressionError;
 
 use crate::args::{CloudOptions, ConventionOptions};
 use crate::failure::Failure;
@@ -76,42 +77,52 @@ pub(crate) fn loaded(path: &Path, bytes: &[u8]) -> Result<Loaded, Failure> {
     shape::io::read_cloud(bytes, extension).map_err(|e| Failure::input(path, e))
 }
 
-/// Fits a cloud; numerical refusals say what to try.
-fn fit(cloud: &PointCloud, name: &str, options: &CloudOptions) -> Result<Fit, Failure> {
-    let settings = FitSettings {
-        degree: options.degree,
-        lambda: options.lambda,
-    };
-    let fitted = shape::fit::fit(cloud, &settings);
-    let smoothed = fitted.and_then(|fit| match options.heat {
-        Some(sigma) => fit.smoothed(cloud, sigma),
-        None => Ok(fit),
-    });
-    smoothed.map_err(|e| match e {
-        FitError::Heat { sigma } => {
-            Failure::usage(format!("--heat {sigma}: expected a number of at least 0"))
-        }
-        FitError::Regression(sph::regression::RegressionError::Penalty { lambda }) => {
-            Failure::usage(format!(
-                "--lambda {lambda}: expected a number of at least 0"
-            ))
-        }
-        other => Failure::refused(format!("{name}: {other}")),
-    })
-}
-
-/// The object of a cloud. Its warnings go to standard error; they are in [`moduli::FitReport`] too.
+/// The object among the points of a cloud. Its warnings go to standard error; they are in
+/// [`moduli::FitReport`] too. Refusals say what to try.
 pub(crate) fn fitted(
     cloud: &PointCloud,
     name: &str,
     options: &CloudOptions,
-) -> Result<(Object, Fit), Failure> {
-    let fit = fit(cloud, name, options)?;
-    let object = Object::from_fit(name, fit.clone(), cloud.points().len());
-    for warning in &object.report().warnings {
+) -> Result<Reconstruction, Failure> {
+    let settings = ReconstructionSettings {
+        fit: FitSettings {
+            degree: options.degree,
+            lambda: options.lambda,
+        },
+        heat: options.heat,
+        scene: options.scene.settings(),
+        accept_misfit: options.scene.accept_misfit,
+    };
+    let made = reconstruct(name, cloud, &settings).map_err(|e| refused(name, e))?;
+    for warning in &made.object.report().warnings {
         warn(format!("{name}: {warning}"));
     }
-    Ok((object, fit))
+    Ok(made)
+}
+
+/// Why a cloud has no object, and what to try.
+fn refused(name: &str, error: moduli::Error) -> Failure {
+    let hint = match &error {
+        moduli::Error::Fit(FitError::Heat { sigma }) => {
+            return Failure::usage(format!("--heat {sigma}: expected a number of at least 0"));
+        }
+        moduli::Error::Fit(FitError::Regression(RegressionError::Penalty { lambda })) => {
+            return Failure::usage(format!(
+                "--lambda {lambda}: expected a number of at least 0"
+            ));
+        }
+        moduli::Error::Scene(SceneError::NoSuchPiece { .. }) => {
+            return Failure::usage(format!("{name}: {error}"));
+        }
+        moduli::Error::Scene(SceneError::Ambiguous { .. }) => {
+            "; choose one with --piece N, or fit all points with --scene off"
+        }
+        moduli::Error::Unexplained { .. } => {
+            "; cut away what is not the object, or check whether every direction from the mean of the points meets the object once; --accept-misfit keeps the surface"
+        }
+        _ => "",
+    };
+    Failure::refused(format!("{name}: {error}{hint}"))
 }
 
 /// The unit vectors of a table, N×3 in a `.npy` file.

@@ -14,6 +14,15 @@ pub enum Error {
     /// The points are not a usable cloud.
     #[error(transparent)]
     Cloud(#[from] shape::CloudError),
+    /// The cloud is not clearly one object.
+    #[error(transparent)]
+    Scene(#[from] shape::SceneError),
+    /// The surface does not explain its points.
+    #[error("{}", notes.join("; "))]
+    Unexplained {
+        /// What is to be said of the scene and of the surface, a sentence each.
+        notes: Vec<String>,
+    },
     /// The cloud has no proved surface.
     #[error(transparent)]
     Fit(#[from] shape::FitError),

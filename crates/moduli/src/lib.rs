@@ -56,7 +56,7 @@ pub use crate::library::{Library, Neighbour, TransferOptions};
 pub use crate::library_entry::{Kept, separation};
 pub use crate::measure::Measure;
 pub use crate::metrics::Metrics;
-pub use crate::object::{FitReport, Object};
+pub use crate::object::{FitReport, Object, Reconstruction, ReconstructionSettings, reconstruct};
 pub use crate::plan::{Plan, Planned, Progress, Stage, TransferCounts};
 pub use crate::spherical_object::{SphericalObject, SurfacePoint};
 pub use crate::synthesis::Poses;
@@ -69,7 +69,8 @@ pub use ::hand::{Hand, OutcomeCounts, Support, TipModel};
 pub use ::record;
 pub use ::shape::io::Format;
 pub use ::shape::{
-    FitSettings, PointCloud, RadialShape, SphericalSettings, SphericalShape, Surface,
+    Acceptance, Fit, FitSettings, PointCloud, RadialShape, Scene, SceneSettings, SphericalSettings,
+    SphericalShape, Support, SupportRule, SupportSource, Surface, Verdict,
 };
 pub use ::sph::Direction;
 pub use nalgebra;

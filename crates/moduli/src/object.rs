@@ -1,23 +1,34 @@
 //! An object: its surface, where its cloud stood, and how well the surface fits.
 
+mod reconstruction;
+
+use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 use nalgebra::{Point3, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use record::ShapeRecord;
-use record::grasps::ObjectRecord;
+use record::grasps::{ObjectRecord, SurfaceModel};
+use record::{ShapeNotes, ShapeRecord};
 use shape::io::{Format, Loaded, read_cloud};
-use shape::{Fit, FitSettings, Misfit, PointCloud, RadialField, RadialShape, Surface};
+use shape::{
+    Acceptance, Fit, FitSettings, PointCloud, RadialField, RadialShape, Scene, Support, Surface,
+    Verdict,
+};
 use sph::Direction;
 use sph::direction::direction_and_radius;
 
 use crate::error::Error;
 use crate::frame::CloudFrame;
-use crate::records::stored_shape;
+use crate::records::{scene_record, stored_shape, stored_support, support_record};
+
+use reconstruction::accepted;
+pub use reconstruction::{Reconstruction, ReconstructionSettings, reconstruct};
 
 /// Share of the directions without a point above which the surface there is said to be a guess.
 const GUESSED: f64 = 0.1;
+/// A largest residual above this share of the mean radius is said: a surface so steep is seldom one body.
+const STEEP: f64 = 0.5;
 /// Degree of the harmonics of a fit, as in the paper.
 const DEGREE: usize = 50;
 
@@ -32,6 +43,7 @@ pub struct Object {
     shape: RadialShape,
     field: OnceLock<RadialField>,
     frame: CloudFrame,
+    support: Option<Support>,
     report: FitReport,
 }
 
@@ -46,6 +58,12 @@ pub struct FitReport {
     pub lambda: f64,
     /// Largest residual, metres; `None` for a surface that was read back or made.
     pub max_abs: Option<f64>,
+    /// How well the surface explains its points; `None` for a surface that was read back or made.
+    pub acceptance: Option<Acceptance>,
+    /// How the cloud was taken apart; `None` where it was not. Its list of the object's points is empty.
+    pub scene: Option<Scene>,
+    /// Residuals by name, as they are stored: `noise_m`, `surface_rms_m`, `unexplained_share`, `rms_m`.
+    pub residuals: BTreeMap<String, f64>,
     /// What the user should know about the surface, a sentence each: rows that were dropped, a unit
     /// that looks wrong, directions that hold no point, points that the surface does not explain.
     pub warnings: Vec<String>,
@@ -64,16 +82,18 @@ impl Object {
         let of_file: Vec<String> = loaded.warnings.iter().map(ToString::to_string).collect();
         let mut generator = ChaCha8Rng::seed_from_u64(0);
         let cloud = loaded.cloud(Loaded::MESH_SAMPLES, &mut generator)?;
-        let settings = FitSettings {
+        let settings = ReconstructionSettings::new(FitSettings {
             degree: DEGREE,
             lambda: None,
-        };
-        let mut object = Self::from_cloud("object", &cloud, &settings)?;
+        });
+        let mut object = reconstruct("object", &cloud, &settings)?.object;
         object.report.warnings.splice(0..0, of_file);
         Ok(object)
     }
 
-    /// Fits a cloud, metres.
+    /// Fits all points of a cloud, metres, as they are: repeated points count as often as they are given,
+    /// nothing is taken for a table, and a surface that does not explain its points is not refused but
+    /// has a warning. [`reconstruct`] is the careful way.
     ///
     /// # Errors
     /// The cloud has no proved surface.
@@ -83,7 +103,9 @@ impl Object {
         settings: &FitSettings,
     ) -> Result<Self, Error> {
         let fit = shape::fit::fit(cloud, settings)?;
-        Ok(Self::from_fit(name, fit, cloud.points().len()))
+        let object = Self::from_fit(name, fit.clone(), cloud.points().len());
+        let acceptance = accepted(&object, &fit, cloud);
+        Ok(object.with_acceptance(acceptance))
     }
 
     /// The object of a fit of `points` points.
@@ -92,15 +114,49 @@ impl Object {
             name: name.to_owned(),
             field: OnceLock::new(),
             frame: CloudFrame::new(fit.centre_in_cloud),
+            support: None,
             report: FitReport {
                 points,
                 rms: fit.rms,
                 lambda: fit.lambda,
                 max_abs: Some(fit.max_abs),
+                residuals: BTreeMap::from([("rms_m".to_owned(), fit.rms)]),
                 warnings: warnings(&fit),
+                ..FitReport::default()
             },
             shape: fit.shape,
         }
+    }
+
+    /// The object with the verdict on its surface, which is a warning where points are not explained.
+    pub(crate) fn with_acceptance(mut self, acceptance: Acceptance) -> Self {
+        let report = &mut self.report;
+        if acceptance.verdict() != Verdict::Explained {
+            report.warnings.push(acceptance.to_string());
+        }
+        let named = [
+            ("noise_m", acceptance.noise_m),
+            ("surface_rms_m", acceptance.surface_rms_m),
+            ("unexplained_share", acceptance.unexplained_share),
+        ];
+        let named = named.map(|(name, value)| (name.to_owned(), value));
+        report.residuals.extend(named);
+        report.acceptance = Some(acceptance);
+        self
+    }
+
+    /// The object with the scene in which it was found; `notes` are sentences about what was left out.
+    pub(crate) fn with_scene(mut self, mut scene: Scene, notes: Vec<String>) -> Self {
+        scene.object = Vec::new();
+        self.support = scene.support.map(|(plane, _)| plane);
+        self.report.warnings.splice(0..0, notes);
+        self.report.scene = Some(scene);
+        self
+    }
+
+    /// The object standing on a plane, or on none.
+    pub fn with_support(self, support: Option<Support>) -> Self {
+        Self { support, ..self }
     }
 
     /// A surface that was made and not fitted; its centred frame is that of the cloud.
@@ -110,6 +166,7 @@ impl Object {
             shape,
             field: OnceLock::new(),
             frame: CloudFrame::new(Point3::origin()),
+            support: None,
             report: FitReport::default(),
         }
     }
@@ -120,19 +177,19 @@ impl Object {
     /// A number is not finite, or the radius is not proved positive.
     pub fn from_record(record: &ShapeRecord) -> Result<Self, Error> {
         let shape = stored_shape(record)?;
-        // The largest residual is not stored: the root mean square stands for both.
-        let misfit = Misfit::found(record.rms_m, record.rms_m, shape.mean_radius());
         Ok(Self {
             name: record.name.clone(),
             shape,
             field: OnceLock::new(),
             frame: CloudFrame::new(record.centre_in_cloud()),
+            support: stored_support(record.notes.support.as_ref())?,
             report: FitReport {
                 points: usize::try_from(record.points).unwrap_or(usize::MAX),
                 rms: record.rms_m,
                 lambda: record.lambda,
-                max_abs: None,
-                warnings: misfit.iter().map(Misfit::to_string).collect(),
+                residuals: record.notes.residuals.clone(),
+                warnings: record.notes.warnings.clone(),
+                ..FitReport::default()
             },
         })
     }
@@ -146,6 +203,11 @@ impl Object {
             lambda: self.report.lambda,
             rms_m: self.report.rms,
             points: self.report.points as u64,
+            notes: ShapeNotes {
+                support: self.support.as_ref().map(support_record),
+                residuals: self.report.residuals.clone(),
+                warnings: self.report.warnings.clone(),
+            },
         }
     }
 
@@ -184,6 +246,11 @@ impl Object {
     /// How the surface came about.
     pub fn report(&self) -> &FitReport {
         &self.report
+    }
+
+    /// The plane on which the object stands, in the frame of the cloud; `None` where it is not known.
+    pub fn support(&self) -> Option<&Support> {
+        self.support.as_ref()
     }
 
     /// The way between the centred frame and that of the cloud.
@@ -230,20 +297,29 @@ impl Object {
             r_max_certified_m: high,
             centre_of_mass_m: self.frame.to_cloud(&self.shape.centre_of_mass()).into(),
             volume_m3: self.shape.mass_properties().volume,
+            model: Some(SurfaceModel::Radial),
+            residuals: self.report.residuals.clone(),
+            support: self.support.as_ref().map(support_record),
+            scene: self.report.scene.as_ref().map(scene_record),
             warnings: self.report.warnings.clone(),
-            ..ObjectRecord::default()
         }
     }
 }
 
 /// What the user should know about a fit.
 fn warnings(fit: &Fit) -> Vec<String> {
-    let unseen = (fit.visibility.unobserved > GUESSED).then(|| {
+    let unobserved = (fit.visibility.unobserved > GUESSED).then(|| {
         format!(
             "no point is seen in {:.0} % of the directions from the mean; the surface there is extrapolated",
             100.0 * fit.visibility.unobserved
         )
     });
-    let misfit = fit.misfit().map(|misfit| misfit.to_string());
-    unseen.into_iter().chain(misfit).collect()
+    let largest = fit.max_abs;
+    let steep = (largest > STEEP * fit.shape.mean_radius()).then(|| {
+        format!(
+            "the largest residual along a direction from the mean is {:.0} mm, more than half the mean radius: a rod, a finger of the robot or another object may be part of the cloud",
+            1e3 * largest
+        )
+    });
+    unobserved.into_iter().chain(steep).collect()
 }

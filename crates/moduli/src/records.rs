@@ -2,12 +2,15 @@
 
 use grasp::{CentreRule, Convention, ConventionError, EdgeNorm, Edges, TangentRule, TorqueLength};
 use hand::{JointKind, TipModel};
+use nalgebra::{UnitVector3, Vector3};
 use record::grasps::{
-    CentreRecord, ContactModelRecord, ConventionRecord, EdgeNormRecord, EdgesRecord, JointRecord,
-    JointUnit, TangentRecord,
+    CentreRecord, ContactModelRecord, ConventionRecord, DroppedRecord, EdgeNormRecord, EdgesRecord,
+    JointRecord, JointUnit, PieceRecord, SceneRecord, SceneSupport, SupportOrigin, SupportRecord,
+    TangentRecord,
 };
 use record::{LibraryGrasp, ShapeRecord};
-use shape::{RadialError, RadialShape};
+use shape::scene::Piece;
+use shape::{RadialError, RadialShape, Scene, Support, SupportSource};
 use sph::{Coefficients, CoefficientsError};
 
 use crate::grasp::Grasp;
@@ -24,9 +27,71 @@ pub enum StoredShapeError {
     /// The map of a spherical shape is not proved an immersion.
     #[error(transparent)]
     Spherical(shape::SphericalError),
+    /// The support plane is damaged.
+    #[error("the support plane of the stored shape has no unit normal or no finite offset")]
+    Support,
     /// The centre is not finite.
     #[error("the centre of the stored shape is not finite")]
     Centre,
+}
+
+/// The record of a support plane.
+pub fn support_record(support: &Support) -> SupportRecord {
+    SupportRecord {
+        normal: support.normal.into_inner().into(),
+        offset_m: support.offset_m,
+    }
+}
+
+/// The support plane of a record.
+///
+/// # Errors
+/// The normal is not a unit vector, or the offset is not finite.
+pub(crate) fn stored_support(
+    record: Option<&SupportRecord>,
+) -> Result<Option<Support>, StoredShapeError> {
+    let Some(record) = record else {
+        return Ok(None);
+    };
+    let normal = Vector3::from(record.normal);
+    // Written so that NaN fails too.
+    if !((normal.norm() - 1.0).abs() <= 1e-6 && record.offset_m.is_finite()) {
+        return Err(StoredShapeError::Support);
+    }
+    Ok(Some(Support {
+        normal: UnitVector3::new_normalize(normal),
+        offset_m: record.offset_m,
+    }))
+}
+
+/// The record of a scene.
+pub fn scene_record(scene: &Scene) -> SceneRecord {
+    let piece = |piece: &Piece| PieceRecord {
+        points: piece.count,
+        share: piece.share,
+        centre_m: piece.centre.into(),
+        extent_m: piece.extent.into(),
+        taken: piece.taken,
+    };
+    SceneRecord {
+        support: scene.support.as_ref().map(|(plane, source)| SceneSupport {
+            normal: plane.normal.into_inner().into(),
+            offset_m: plane.offset_m,
+            source: match source {
+                SupportSource::Visible => SupportOrigin::Visible,
+                SupportSource::Foot => SupportOrigin::Foot,
+                SupportSource::Given => SupportOrigin::Given,
+            },
+        }),
+        pieces: scene.pieces.iter().map(piece).collect(),
+        dropped: DroppedRecord {
+            repeated: scene.dropped.repeated,
+            sentinels: scene.dropped.sentinels,
+            support: scene.dropped.support,
+            isolated: scene.dropped.isolated,
+            other_pieces: scene.dropped.other_pieces,
+        },
+    }
 }
 
 /// The coefficients β of a stored shape; the radius is not proved positive.
@@ -176,6 +241,7 @@ fn stable_above(name: &str) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use record::ShapeNotes;
 
     #[test]
     fn every_convention_comes_back_from_its_record() {
@@ -201,6 +267,7 @@ mod tests {
             lambda: 1e-3,
             rms_m: 1e-4,
             points: 25_000,
+            notes: ShapeNotes::default(),
         }
     }
 

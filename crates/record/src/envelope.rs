@@ -35,10 +35,11 @@ impl Kind {
         }
     }
 
-    /// The version that is written, and the only one that is read.
+    /// The version that is written. Shapes of version 1, which have no notes, are read too.
     fn version(self) -> u16 {
         match self {
-            Kind::Shape | Kind::Library | Kind::Spherical | Kind::LibraryObject => 1,
+            Kind::Shape => 2,
+            Kind::Library | Kind::Spherical | Kind::LibraryObject => 1,
         }
     }
 
@@ -138,12 +139,29 @@ pub fn kind_of(bytes: &[u8]) -> Option<Kind> {
     Kind::from_code(u16::from_le_bytes([bytes[8], bytes[9]]))
 }
 
+/// The version of the format that a header names.
+pub fn version_of(bytes: &[u8]) -> Option<u16> {
+    kind_of(bytes).map(|_| u16::from_le_bytes([bytes[10], bytes[11]]))
+}
+
 /// Decodes a value after checking mark, kind, version, length and checksum.
 ///
 /// # Errors
 /// One of these checks fails, or the body does not decode to the type or has bytes left over.
 pub fn decode<T: DeserializeOwned>(kind: Kind, bytes: &[u8]) -> Result<T, EnvelopeError> {
-    let body = checked_body(kind, bytes)?;
+    decode_version(kind, kind.version(), bytes)
+}
+
+/// [`decode`] for a version that is not the newest.
+///
+/// # Errors
+/// Those of [`decode`].
+pub fn decode_version<T: DeserializeOwned>(
+    kind: Kind,
+    version: u16,
+    bytes: &[u8],
+) -> Result<T, EnvelopeError> {
+    let body = checked_body(kind, version, bytes)?;
     let config = config::standard()
         .with_fixed_int_encoding()
         .with_limit::<{ MAX_BODY as usize }>();
@@ -160,7 +178,7 @@ pub fn decode<T: DeserializeOwned>(kind: Kind, bytes: &[u8]) -> Result<T, Envelo
     }
 }
 
-fn checked_body(kind: Kind, bytes: &[u8]) -> Result<&[u8], EnvelopeError> {
+fn checked_body(kind: Kind, version: u16, bytes: &[u8]) -> Result<&[u8], EnvelopeError> {
     if bytes.len() < HEADER || bytes[..8] != MAGIC {
         return Err(EnvelopeError::Magic);
     }
@@ -177,7 +195,7 @@ fn checked_body(kind: Kind, bytes: &[u8]) -> Result<&[u8], EnvelopeError> {
             expected: kind.name(),
         });
     }
-    if short(10) != kind.version() {
+    if short(10) != version {
         return Err(EnvelopeError::Version {
             kind: kind.name(),
             found: short(10),

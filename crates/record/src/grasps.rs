@@ -6,6 +6,7 @@
 mod contact;
 mod convention;
 mod hand;
+mod scene;
 mod source;
 
 use std::collections::BTreeMap;
@@ -17,6 +18,7 @@ pub use convention::{
     CentreRecord, ContactModelRecord, ConventionRecord, EdgeNormRecord, EdgesRecord, TangentRecord,
 };
 pub use hand::{ExecutionRecord, HandRecord, JointRecord, JointUnit, PoseRecord};
+pub use scene::{DroppedRecord, PieceRecord, SceneRecord, SceneSupport, SupportOrigin};
 pub use source::SourceRecord;
 
 /// The version of `grasps.json` that is written. Keys with a default may be added without a new
@@ -91,6 +93,9 @@ pub struct ObjectRecord {
     /// The plane on which the object stands; version 2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub support: Option<SupportRecord>,
+    /// How the cloud was taken apart; version 2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scene: Option<SceneRecord>,
     /// What the user should know about the object, one sentence each; version 2.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,

@@ -36,5 +36,5 @@ pub use envelope::{EnvelopeError, Kind};
 pub use grasps::{GraspRecord, GraspsFile, GraspsFileError};
 pub use isaac::isaac_grasps;
 pub use library::{LibraryEntry, LibraryGrasp, LibraryObjectRecord, LibraryRecord};
-pub use shape_record::ShapeRecord;
+pub use shape_record::{ShapeNotes, ShapeRecord};
 pub use spherical_record::SphericalRecord;

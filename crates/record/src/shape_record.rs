@@ -1,9 +1,12 @@
 //! A fitted shape as it is stored.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
 
 use crate::envelope::{self, EnvelopeError, Kind};
+use crate::grasps::SupportRecord;
 
 /// A radius function on the sphere, and the position of its cloud.
 ///
@@ -23,6 +26,21 @@ pub struct ShapeRecord {
     pub rms_m: f64,
     /// Number of points fitted.
     pub points: u64,
+    /// What else is known of the object. It follows the shape in a shape file of version 2, and is not
+    /// stored in a library.
+    #[serde(skip)]
+    pub notes: ShapeNotes,
+}
+
+/// What is known of an object besides its surface.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ShapeNotes {
+    /// The plane on which the object stands, in the frame of the cloud.
+    pub support: Option<SupportRecord>,
+    /// How well the surface fits its cloud, by name.
+    pub residuals: BTreeMap<String, f64>,
+    /// What the user should know about the surface, a sentence each.
+    pub warnings: Vec<String>,
 }
 
 impl ShapeRecord {
@@ -36,7 +54,7 @@ impl ShapeRecord {
     /// # Errors
     /// The record cannot be encoded, or is larger than 256 MiB.
     pub fn to_bytes(&self) -> Result<Vec<u8>, EnvelopeError> {
-        envelope::encode(Kind::Shape, self)
+        envelope::encode(Kind::Shape, &(self, &self.notes))
     }
 
     /// Reads the bytes of a shape file.
@@ -47,6 +65,10 @@ impl ShapeRecord {
     /// # Errors
     /// The bytes are not a shape file of a version that is read, or are damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, EnvelopeError> {
-        envelope::decode(Kind::Shape, bytes)
+        if envelope::version_of(bytes) == Some(1) {
+            return envelope::decode_version(Kind::Shape, 1, bytes);
+        }
+        let (shape, notes): (Self, ShapeNotes) = envelope::decode(Kind::Shape, bytes)?;
+        Ok(Self { notes, ..shape })
     }
 }

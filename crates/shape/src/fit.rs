@@ -7,7 +7,6 @@ use sph::regression::{Gram, Penalty, RegressionError, Samples};
 use sph::rotation::heat_flow;
 
 use crate::hole_filling::fill_holes;
-use crate::misfit::Misfit;
 use crate::opening::{OpenContainer, Opening};
 use crate::outliers::{isolated_points, outlying_points};
 use crate::point_cloud::{CloudError, PointCloud, RadialSamples};
@@ -139,9 +138,6 @@ pub enum FitError {
         /// The time σ that was given.
         sigma: f64,
     },
-    /// The residuals are so large that the surface is no description of the cloud.
-    #[error("{0}")]
-    Misfit(Misfit),
     /// Residuals were asked for against another cloud.
     #[error("the cloud is not the one that was fitted")]
     OtherCloud,
@@ -172,11 +168,6 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// What is doubtful about the surface as a description of its cloud, see [`Misfit::found`].
-    pub fn misfit(&self) -> Option<Misfit> {
-        Misfit::found(self.rms, self.max_abs, self.shape.mean_radius())
-    }
-
     /// The surface after heat has flowed on the sphere for a time σ, β_{lm} e^{−l(l+1)σ}: the weighted
     /// harmonics of the paper's reference 13, which damp the ringing at edges.
     ///
@@ -243,11 +234,7 @@ pub fn fit(cloud: &PointCloud, settings: &FitSettings) -> Result<Fit, FitError> 
         let outlying = outlying_points(&view.points, &residuals);
         if round >= ROUNDS || !influential(&outlying, &residuals) {
             outliers.sort_unstable();
-            let fit = solved.report(&view, &residuals, visibility, outliers);
-            return match fit.misfit().filter(Misfit::is_refused) {
-                Some(misfit) => Err(FitError::Misfit(misfit)),
-                None => Ok(fit),
-            };
+            return Ok(solved.report(&view, &residuals, visibility, outliers));
         }
         outliers.extend(outlying.iter().map(|i| view.place(*i)));
     }

@@ -24,6 +24,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod acceptance;
 pub mod algebra;
 mod crossing;
 pub mod embedding;
@@ -34,7 +35,6 @@ mod injectivity;
 mod injectivity_cell;
 pub mod io;
 pub mod mass;
-mod misfit;
 pub mod noise;
 mod normals;
 pub mod opening;
@@ -44,6 +44,7 @@ pub mod point_cloud;
 pub mod radial;
 mod radial_field;
 mod rotation_field;
+pub mod scene;
 mod sphere_partition;
 mod spherical;
 mod spherical_cloud;
@@ -53,15 +54,17 @@ pub mod surface;
 mod third_derivatives;
 pub mod triangle_mesh;
 pub mod visibility;
+mod voxel_grid;
 
+pub use acceptance::{Acceptance, Verdict};
 pub use fit::{Fit, FitError, FitSettings};
 pub use immersion::{Immersion, SphericalError};
 pub use injectivity::Embedding;
-pub use misfit::Misfit;
 pub use opening::{OpenContainer, Opening};
 pub use point_cloud::{CloudError, PointCloud};
 pub use radial::{RadialError, RadialShape};
 pub use radial_field::RadialField;
+pub use scene::{Scene, SceneError, SceneSettings, Support, SupportRule, SupportSource};
 pub use spherical::SphericalShape;
 pub use spherical_cloud::{
     SphericalCloudError, SphericalCloudFit, SphericalSettings, fit_spherical_cloud,

@@ -1,8 +1,8 @@
 //! Points that belong to no surface: far from the fitted one, and alone.
 
-use std::collections::HashMap;
-
 use nalgebra::Point3;
+
+use crate::voxel_grid::{VoxelGrid, median, spacing_on_a_sphere};
 
 /// A point is far from the surface beyond this many standard deviations of the residuals.
 const FAR: f64 = 4.0;
@@ -21,7 +21,7 @@ const MIN_NEIGHBOURS: usize = 2;
 /// radius cannot describe (an ear, a handle) is far from the surface too, but in company; it keeps
 /// its weight, so that clouds without outliers lose nothing. Costs a few operations a point.
 pub(crate) fn outlying_points(points: &[Point3<f64>], residuals: &[f64]) -> Vec<usize> {
-    let limit = FAR * NORMAL * median_size(residuals);
+    let limit = FAR * NORMAL * median(residuals.iter().map(|e| e.abs()).collect());
     let far: Vec<usize> = (0..points.len())
         .filter(|i| residuals[*i].abs() > limit)
         .collect();
@@ -37,74 +37,17 @@ fn isolated(points: &[Point3<f64>], suspects: Vec<usize>) -> Vec<usize> {
     if suspects.is_empty() {
         return suspects;
     }
-    let reach = REACH * spacing(points);
+    let reach = REACH * spacing_on_a_sphere(points);
     if !(reach > 0.0 && reach.is_finite()) {
         return Vec::new();
     }
-    let boxes = VoxelGrid::new(points, reach);
-    let alone = |i: &usize| boxes.others_near(&points[*i], MIN_NEIGHBOURS) < MIN_NEIGHBOURS;
-    suspects.into_iter().filter(alone).collect()
-}
-
-/// Points by the cube they lie in.
-struct VoxelGrid<'a> {
-    points: &'a [Point3<f64>],
-    side: f64,
-    members: HashMap<[i64; 3], Vec<usize>>,
-}
-
-impl<'a> VoxelGrid<'a> {
-    fn new(points: &'a [Point3<f64>], side: f64) -> Self {
-        let mut boxes = Self {
-            points,
-            side,
-            members: HashMap::with_capacity(points.len()),
-        };
-        for (i, p) in points.iter().enumerate() {
-            boxes.members.entry(boxes.key(p)).or_default().push(i);
-        }
-        boxes
-    }
-
-    fn key(&self, p: &Point3<f64>) -> [i64; 3] {
-        [p.x, p.y, p.z].map(|x| (x / self.side).floor() as i64)
-    }
-
-    /// How many points other than p itself lie within one side of it; counts no further than
-    /// `enough`.
-    fn others_near(&self, p: &Point3<f64>, enough: usize) -> usize {
-        let [x, y, z] = self.key(p);
-        let near = |k: i64| k.saturating_sub(1)..=k.saturating_add(1);
-        let keys = near(x).flat_map(|x| near(y).flat_map(move |y| near(z).map(move |z| [x, y, z])));
-        keys.filter_map(|key| self.members.get(&key))
-            .flatten()
-            .filter(|i| (self.points[**i] - p).norm() <= self.side)
-            .take(enough + 1)
-            .count()
-            .saturating_sub(1)
-    }
-}
-
-fn median_size(residuals: &[f64]) -> f64 {
-    let mut sizes: Vec<f64> = residuals.iter().map(|e| e.abs()).collect();
-    let middle = sizes.len() / 2;
-    if sizes.is_empty() {
-        return 0.0;
-    }
-    *sizes.select_nth_unstable_by(middle, f64::total_cmp).1
-}
-
-/// Distance between neighbours if the points were spread over the sphere of their median distance
-/// from their middle.
-fn spacing(points: &[Point3<f64>]) -> f64 {
-    let median = |axis: usize| {
-        let mut values: Vec<f64> = points.iter().map(|p| p[axis]).collect();
-        let middle = values.len() / 2;
-        *values.select_nth_unstable_by(middle, f64::total_cmp).1
+    let grid = VoxelGrid::new(points, reach);
+    // The point itself is among those within reach.
+    let alone = |i: &usize| {
+        let near = grid.within(&points[*i], reach);
+        near.take(MIN_NEIGHBOURS + 1).count() <= MIN_NEIGHBOURS
     };
-    let centre = Point3::new(median(0), median(1), median(2));
-    let distances: Vec<f64> = points.iter().map(|p| (p - centre).norm()).collect();
-    median_size(&distances) * (4.0 * std::f64::consts::PI / points.len() as f64).sqrt()
+    suspects.into_iter().filter(alone).collect()
 }
 
 #[cfg(test)]

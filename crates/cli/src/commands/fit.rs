@@ -7,6 +7,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use moduli::records::scene_record;
+use record::grasps::SceneRecord;
 use serde::Serialize;
 
 use crate::args::{Common, FitOptions, Model};
@@ -22,6 +24,9 @@ struct FitLine {
     lambda: f64,
     rms_m: f64,
     max_abs_m: f64,
+    noise_m: Option<f64>,
+    unexplained_share: Option<f64>,
+    surface_rms_m: Option<f64>,
     r_min_certified_m: f64,
     r_max_certified_m: f64,
     in_m_rad: bool,
@@ -30,6 +35,7 @@ struct FitLine {
     unseen_share: f64,
     multivalued_share: f64,
     centre_m: [f64; 3],
+    scene: Option<SceneRecord>,
     warnings: Vec<String>,
     seconds: f64,
 }
@@ -84,10 +90,12 @@ pub(crate) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> 
 fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Failure> {
     let cloud = input::cloud(path, &options.cloud, seed)?;
     let start = Instant::now();
-    let (object, fit) = input::fitted(&cloud, &path.display().to_string(), &options.cloud)?;
+    let made = input::fitted(&cloud, &path.display().to_string(), &options.cloud)?;
+    let (object, fit) = (made.object, made.fit);
     let seconds = start.elapsed().as_secs_f64();
     let points = cloud.points().len();
-    let warnings = object.report().warnings.clone();
+    let report = object.report().clone();
+    let isolated = report.scene.as_ref().map_or(0, |s| s.dropped.isolated);
     if let Some(target) = target(path, options) {
         let bytes = object
             .named(&input::stem(path))
@@ -105,16 +113,20 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Fail
         lambda: fit.lambda,
         rms_m: fit.rms,
         max_abs_m: fit.max_abs,
+        noise_m: report.acceptance.map(|a| a.noise_m),
+        unexplained_share: report.acceptance.map(|a| a.unexplained_share),
+        surface_rms_m: report.acceptance.map(|a| a.surface_rms_m),
         r_min_certified_m: r_min,
         r_max_certified_m: r_max,
         // A shape that is not cannot be made: `fit` has refused before.
         in_m_rad: r_min > 0.0,
         condition: fit.condition,
-        outliers: fit.outliers.len(),
+        outliers: fit.outliers.len() + isolated,
         unseen_share: fit.visibility.unobserved,
         multivalued_share: fit.visibility.multiple,
         centre_m: fit.centre_in_cloud.into(),
-        warnings,
+        scene: report.scene.as_ref().map(scene_record),
+        warnings: report.warnings,
         seconds,
     })
 }

@@ -7,10 +7,12 @@ use std::time::Instant;
 use grasp::Convention;
 use hand::Hand;
 use indicatif::ProgressBar;
+use moduli::records::scene_record;
 use moduli::{
     HandSearch, Library, Measure, Plan, Planned, Poses, Progress, Stage, TransferOptions,
 };
 use record::GraspsFile;
+use record::grasps::SceneRecord;
 use serde::Serialize;
 use shape::PointCloud;
 
@@ -29,6 +31,7 @@ struct GraspLine {
     points: usize,
     r_min_certified_m: f64,
     r_max_certified_m: f64,
+    scene: Option<SceneRecord>,
     hand: String,
     neighbours: Vec<String>,
     transferred: usize,
@@ -120,8 +123,9 @@ impl Shared<'_> {
     fn grasp(&self, name: &str, cloud: &PointCloud, folder: &Path) -> Result<(), Failure> {
         let start = Instant::now();
         let (options, common, hand) = (self.options, self.common, &self.hand);
-        let (object, _) = input::fitted(cloud, name, &options.fit)?;
-        let object = object.with_warnings(self.warnings.iter().cloned());
+        let made = input::fitted(cloud, name, &options.fit)?;
+        let cloud = &made.cloud;
+        let object = made.object.with_warnings(self.warnings.iter().cloned());
         let refused = |e: moduli::Error| Failure::refused(format!("{name}: {e}"));
         let tips = options.contact.unwrap_or_else(|| hand.tip_model());
         let measure = object.measure(&self.convention).map_err(refused)?;
@@ -174,6 +178,7 @@ fn line(
         points: cloud.points().len(),
         r_min_certified_m: r_min,
         r_max_certified_m: r_max,
+        scene: object.report().scene.as_ref().map(scene_record),
         hand: hand.name().to_owned(),
         neighbours: transferred.neighbours.iter().map(described).collect(),
         transferred: transferred.all,

@@ -212,7 +212,7 @@ impl<'a> Maker<'a> {
         let options = self.options;
         let name = input::stem(path);
         let cloud = input::cloud(path, &options.fit, self.common.seed)?;
-        let (object, _) = input::fitted(&cloud, &name, &options.fit)?;
+        let object = input::fitted(&cloud, &name, &options.fit)?.object;
         let refused = |e: moduli::Error| Failure::refused(format!("{name}: {e}"));
         let measure = object.measure(&self.convention).map_err(refused)?;
         let poses = Poses {

@@ -363,7 +363,7 @@ fn bad_usage_is_exit_2() {
 }
 
 #[test]
-fn a_surface_that_does_not_explain_its_points_is_said_and_a_worse_one_refused() {
+fn a_crumb_is_left_out_and_a_surface_that_does_not_explain_its_points_refused() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();
     // A ball of 4 cm, and a crumb beside it.
@@ -379,10 +379,16 @@ fn a_surface_that_does_not_explain_its_points_is_said_and_a_worse_one_refused() 
         .collect();
     std::fs::write(here.join("scene.xyz"), text).unwrap();
     let fit = moduli(here, &["fit", "scene.xyz", "--degree", "20", "--json"]);
-    assert!(String::from_utf8_lossy(&fit.stderr).contains("does not explain"));
+    assert!(String::from_utf8_lossy(&fit.stderr).contains("left out"));
     let line: serde_json::Value = serde_json::from_str(&stdout(&fit)).unwrap();
     let warning = line["warnings"][0].as_str().unwrap();
-    assert!(warning.contains("does not explain"), "{warning}");
+    assert!(
+        warning.contains("2 pieces") && warning.contains("left out"),
+        "{warning}"
+    );
+    assert!(line["surface_rms_m"].as_f64().unwrap() <= 1e-5);
+    assert_eq!(line["scene"]["pieces"][1]["points"], 80);
+    assert_eq!(line["scene"]["support"]["source"], "foot");
     // A needle of 100 : 1, whose fitted surface would be a ball.
     let needle = sph::direction::even_directions(3000);
     let text: String = needle
@@ -391,7 +397,19 @@ fn a_surface_that_does_not_explain_its_points_is_said_and_a_worse_one_refused() 
         .collect();
     std::fs::write(here.join("needle.xyz"), text).unwrap();
     let fit = moduli(here, &["fit", "needle.xyz", "--degree", "20"]);
-    refused(&fit, 4, &["needle.xyz", "does not explain"]);
+    refused(&fit, 4, &["needle.xyz", "explains", "--accept-misfit"]);
+    let kept = [
+        "fit",
+        "needle.xyz",
+        "--degree",
+        "20",
+        "--accept-misfit",
+        "-o",
+        "kept.shape",
+    ];
+    let kept = moduli(here, &kept);
+    assert!(kept.status.success());
+    assert!(String::from_utf8_lossy(&kept.stderr).contains("explains"));
 }
 
 #[test]

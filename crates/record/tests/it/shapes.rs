@@ -10,6 +10,7 @@ fn shape() -> ShapeRecord {
         lambda: 1e-3,
         rms_m: 1e-4,
         points: 25_000,
+        notes: record::ShapeNotes::default(),
     }
 }
 
@@ -23,6 +24,30 @@ fn a_shape_reads_back_as_it_was() {
             expected: "library",
             ..
         })
+    ));
+}
+
+#[test]
+fn a_shape_keeps_its_notes_and_one_without_them_is_read() {
+    let mut noted = shape();
+    noted.notes = record::ShapeNotes {
+        support: Some(record::grasps::SupportRecord {
+            normal: [0.0, 0.0, 1.0],
+            offset_m: -0.05,
+        }),
+        residuals: [("noise_m".to_owned(), 2e-4)].into(),
+        warnings: vec!["one side was not seen".to_owned()],
+    };
+    let bytes = noted.to_bytes().unwrap();
+    assert_eq!(ShapeRecord::from_bytes(&bytes), Ok(noted));
+    // The layout of version 1: the shape alone.
+    let mut old = record::envelope::encode(record::Kind::Shape, &shape()).unwrap();
+    old[10] = 1;
+    assert_eq!(ShapeRecord::from_bytes(&old), Ok(shape()));
+    old[10] = 3;
+    assert!(matches!(
+        ShapeRecord::from_bytes(&old),
+        Err(EnvelopeError::Version { found: 3, .. })
     ));
 }
 

@@ -1,5 +1,6 @@
 //! The tests of `shape` that use it from outside, as one program.
 
+mod acceptance;
 mod common;
 mod embeddings;
 mod formats;
@@ -10,6 +11,7 @@ mod open_containers;
 mod outliers;
 mod properties;
 mod real_scans;
+mod scenes;
 mod smoothing;
 mod spherical;
 mod true_surfaces;
