@@ -8,8 +8,8 @@ use nalgebra::Isometry3;
 
 use crate::collision::{CollisionObject, Precision, first_close_pair};
 use crate::hand::{Finger, FingerGroup, Hand};
-use crate::support::Support;
 use group::close_group;
+use shape::Support;
 use wrapping::wrap_group;
 
 /// A finger that could close no farther than this in a step has come to rest; in units of closing.

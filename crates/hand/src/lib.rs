@@ -54,7 +54,6 @@ pub use reach::{
     HandState, ImproveParams, Improvement, ReachOutcome, ReachParams, Reached, Reacher,
     reach_contacts,
 };
-pub use support::Support;
 pub use synthesis::{
     HandGrasp, Outcome, OutcomeCounts, Synthesis, SynthesisError, SynthesisParams, collect,
     evaluate_pose, synthesize, synthesize_watched,

@@ -9,8 +9,8 @@ use rand::{Rng, RngExt};
 use shape::RadialShape;
 
 use crate::hand::Hand;
-use crate::support::Support;
 use antipodal::Pairs;
+use shape::Support;
 
 /// Draws of one pose beyond the first.
 const REDRAWS: usize = 50;

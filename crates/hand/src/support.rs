@@ -1,35 +1,9 @@
-//! The plane on which the object stands, and the heights of a hand's links above it.
+//! The heights of a hand's links above the plane on which the object stands.
 
-use nalgebra::{Isometry3, Point3, UnitVector3};
+use nalgebra::Isometry3;
+use shape::Support;
 
 use crate::hand::Hand;
-
-/// The half-space {x : normal · x ≥ offset} above the plane on which the object stands.
-///
-/// Lengths in metres, in the frame in which a hand is placed: the object frame here, the frame of the
-/// cloud where a user gives it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Support {
-    /// Unit normal, towards the object.
-    pub normal: UnitVector3<f64>,
-    /// Signed distance of the plane from the origin.
-    pub offset: f64,
-}
-
-impl Support {
-    /// Height of a point above the plane.
-    pub fn height(&self, p: &Point3<f64>) -> f64 {
-        self.normal.dot(&p.coords) - self.offset
-    }
-
-    /// The plane seen from a frame at this pose, given in the frame of the plane.
-    pub fn seen_from(&self, pose: &Isometry3<f64>) -> Self {
-        Support {
-            normal: pose.inverse_transform_unit_vector(&self.normal),
-            offset: -self.height(&pose.translation.vector.into()),
-        }
-    }
-}
 
 impl Hand {
     /// The link that is nearest to a plane, or farthest below it, and its least height, for poses of
@@ -56,6 +30,6 @@ impl Hand {
             return None;
         }
         let local = support.seen_from(pose);
-        Some(-shape.extent(&-local.normal.into_inner()) - local.offset)
+        Some(-shape.extent(&-local.normal.into_inner()) - local.offset_m)
     }
 }

@@ -1,7 +1,7 @@
 //! The plane on which an object stands where nothing else is known of it.
 
-use hand::Support;
 use nalgebra::UnitVector3;
+use shape::Support;
 
 use crate::object::Object;
 
@@ -17,7 +17,7 @@ impl Object {
     ///
     /// let ball = Object::from_shape("ball", RadialShape::sphere(3, 0.04)?);
     /// let foot = ball.foot(&Vector3::z_axis());
-    /// assert!((foot.offset + 0.04).abs() < 1e-9);
+    /// assert!((foot.offset_m + 0.04).abs() < 1e-9);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn foot(&self, up: &UnitVector3<f64>) -> Support {
@@ -25,7 +25,7 @@ impl Object {
         let heights = vertices.iter().map(|v| up.dot(&v.coords));
         let centred = Support {
             normal: *up,
-            offset: heights.fold(f64::INFINITY, f64::min),
+            offset_m: heights.fold(f64::INFINITY, f64::min),
         };
         self.frame().plane_to_cloud(&centred)
     }

@@ -4,8 +4,8 @@
 //! Both have the same axes. The origin of the centred frame is the mean of the cloud's points; all
 //! computation happens there, and everything that is reported is in the frame of the cloud.
 
-use hand::Support;
 use nalgebra::{Isometry3, Point3, Translation3};
+use shape::Support;
 
 /// Where the centred frame of an object lies in the frame of its cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +42,7 @@ impl CloudFrame {
     /// A plane given in the frame of the cloud, in the centred frame.
     pub fn plane_to_centred(&self, plane: &Support) -> Support {
         Support {
-            offset: plane.offset - plane.normal.dot(&self.centre.coords),
+            offset_m: plane.offset_m - plane.normal.dot(&self.centre.coords),
             ..*plane
         }
     }
@@ -50,7 +50,7 @@ impl CloudFrame {
     /// A plane given in the centred frame, in the frame of the cloud.
     pub fn plane_to_cloud(&self, plane: &Support) -> Support {
         Support {
-            offset: plane.offset + plane.normal.dot(&self.centre.coords),
+            offset_m: plane.offset_m + plane.normal.dot(&self.centre.coords),
             ..*plane
         }
     }
@@ -74,11 +74,11 @@ mod tests {
         assert_eq!(frame.to_cloud(&frame.cloud_origin()), Point3::origin());
         let plane = Support {
             normal: nalgebra::Vector3::z_axis(),
-            offset: 0.97,
+            offset_m: 0.97,
         };
         let centred = frame.plane_to_centred(&plane);
         assert!((centred.height(&frame.to_centred(&p)) - plane.height(&p)).abs() <= 1e-15);
-        assert!((frame.plane_to_cloud(&centred).offset - plane.offset).abs() <= 1e-15);
+        assert!((frame.plane_to_cloud(&centred).offset_m - plane.offset_m).abs() <= 1e-15);
         let pose = Isometry3::translation(0.1, 0.2, 0.3);
         let moved = frame.pose_to_cloud(&pose) * Point3::origin();
         assert!((moved - frame.to_cloud(&Point3::new(0.1, 0.2, 0.3))).norm() <= 1e-15);

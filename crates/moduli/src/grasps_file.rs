@@ -2,17 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use hand::{Drive, Hand, Joint, Support};
+use hand::{Drive, Hand, Joint};
+use record::grasps::ObjectRecord;
 use record::grasps::{
     AssessmentRecord, ConventionRecord, ExecutionRecord, GRASPS_VERSION, HandRecord, JointRecord,
     PoseRecord, SourceRecord,
 };
-use record::grasps::{ObjectRecord, SupportRecord};
 use record::{GraspRecord, GraspsFile};
 
 use crate::grasp::{Grasp, HandPlacement, Source};
 use crate::measure::Measure;
-use crate::records::{contact_model_record, convention_record, joint_record};
+use crate::records::{contact_model_record, convention_record, joint_record, support_record};
 
 impl Measure<'_> {
     /// The file of ranked grasps of a hand; ranks follow the order of the list.
@@ -43,13 +43,6 @@ impl Measure<'_> {
             },
             grasps,
         }
-    }
-}
-
-fn support_record(support: &Support) -> SupportRecord {
-    SupportRecord {
-        normal: support.normal.into_inner().into(),
-        offset_m: support.offset,
     }
 }
 

@@ -65,7 +65,7 @@ pub use ::grasp::{
     CentreRule, Contact, Convention, EdgeNorm, Edges, Epsilon, Resistance, TangentRule,
     TorqueLength, Wrench,
 };
-pub use ::hand::{Hand, OutcomeCounts, Support, TipModel};
+pub use ::hand::{Hand, OutcomeCounts, TipModel};
 pub use ::record;
 pub use ::shape::io::Format;
 pub use ::shape::{

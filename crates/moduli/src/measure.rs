@@ -1,8 +1,9 @@
 //! How quality is measured on one object, and when a grasp is stable.
 
 use grasp::{Contact, Convention, Epsilon, GraspModel, QualityError, Workspace};
-use hand::{Hand, Support, TipModel};
+use hand::{Hand, TipModel};
 use nalgebra::Point3;
+use shape::Support;
 use space::point::contacts_on;
 use space::{MonotoneAscent, Objective, ResolvedConvention};
 use sph::Direction;
@@ -48,11 +49,12 @@ impl<'a> Measure<'a> {
             rule: rule.clone(),
             resolved: ResolvedConvention::new(rule, object.shape(), &origin),
             tips: None,
-            support: None,
+            support: object.support().map(|s| object.frame().plane_to_centred(s)),
         })
     }
 
-    /// The same on a plane, given in the frame of the cloud: hands stay above it.
+    /// The same on another plane than the object's own, given in the frame of the cloud, or on none: hands
+    /// stay above it.
     #[must_use]
     pub fn with_support(self, support: Option<Support>) -> Self {
         let centred = |plane| self.object.frame().plane_to_centred(&plane);

@@ -6,7 +6,7 @@ mod pieces;
 mod plane;
 mod thinning;
 
-use nalgebra::{Point3, UnitVector3, Vector3};
+use nalgebra::{Isometry3, Point3, UnitVector3, Vector3};
 
 use crate::voxel_grid::spacing;
 
@@ -68,6 +68,14 @@ pub struct Support {
 }
 
 impl Support {
+    /// The plane in a frame whose pose in the plane's frame is given.
+    pub fn seen_from(&self, pose: &Isometry3<f64>) -> Self {
+        Support {
+            normal: pose.inverse_transform_unit_vector(&self.normal),
+            offset_m: -self.height(&pose.translation.vector.into()),
+        }
+    }
+
     /// Height of a point above the plane, metres.
     pub fn height(&self, p: &Point3<f64>) -> f64 {
         self.normal.dot(&p.coords) - self.offset_m

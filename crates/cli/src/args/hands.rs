@@ -131,8 +131,6 @@ pub(crate) struct GraspOptions {
     #[arg(long, value_parser = contact_option)]
     pub(crate) contact: Option<TipModel>,
     #[command(flatten)]
-    pub(crate) support: SupportOptions,
-    #[command(flatten)]
     pub(crate) convention: ConventionOptions,
     /// Number of library objects to transfer from, the nearest ones.
     #[arg(long, default_value_t = 3, value_parser = count_in::<0, 1000>)]

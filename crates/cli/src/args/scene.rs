@@ -55,13 +55,13 @@ fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     numbers?.try_into().ok()
 }
 
-fn upward(text: &str) -> Result<UnitVector3<f64>, String> {
+pub(super) fn upward(text: &str) -> Result<UnitVector3<f64>, String> {
     numbers::<3>(text)
         .and_then(|v| UnitVector3::try_new(Vector3::from(v), 1e-12))
         .ok_or_else(|| "expected X,Y,Z, not all 0".to_owned())
 }
 
-fn support(text: &str) -> Result<SupportRule, String> {
+pub(super) fn support(text: &str) -> Result<SupportRule, String> {
     match text {
         "auto" => Ok(SupportRule::Auto),
         "none" => Ok(SupportRule::None),

@@ -129,8 +129,7 @@ impl Shared<'_> {
         let refused = |e: moduli::Error| Failure::refused(format!("{name}: {e}"));
         let tips = options.contact.unwrap_or_else(|| hand.tip_model());
         let measure = object.measure(&self.convention).map_err(refused)?;
-        let support = options.support.under(&object);
-        let measure = measure.with_tips(tips).with_support(support);
+        let measure = measure.with_tips(tips);
         let bars = Bars::new(common.quiet);
         let planned = plan(options, common)
             .run(&measure, hand, &self.library, &|p| bars.show(p))

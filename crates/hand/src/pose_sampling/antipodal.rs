@@ -9,7 +9,7 @@ use sph::direction::tangent_frame;
 use super::PoseSampling;
 use super::obstacles::Obstacles;
 use crate::hand::{Hand, Jaws};
-use crate::support::Support;
+use shape::Support;
 
 /// Pairs tried for one pose.
 const TRIES: usize = 100;

@@ -9,7 +9,7 @@ use rand::{Rng, RngExt};
 use super::HandState;
 use super::problem::{Problem, state};
 use crate::alignment::{DEPTH, align, contact_points};
-use crate::support::Support;
+use shape::Support;
 
 /// Half-closed hands among which a start is chosen.
 const SHAPES: usize = 24;

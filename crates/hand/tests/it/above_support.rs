@@ -5,17 +5,17 @@ use crate::common::{egg, object_from_links, paper_params, seeded};
 use grasp::Contact;
 use hand::{
     ClosingRules, CollisionObject, Hand, PoseSampling, ReachOutcome, ReachParams, Rejection,
-    Support, SynthesisParams, close_hand, hand_meshes, reach_contacts, schunk_sdh, synthesize,
+    SynthesisParams, close_hand, hand_meshes, reach_contacts, schunk_sdh, synthesize,
 };
 use nalgebra::{Isometry3, UnitVector3, Vector3};
-use shape::RadialShape;
+use shape::{RadialShape, Support};
 
 fn ground(surface: &RadialShape, normal: UnitVector3<f64>) -> Support {
     let vertices = surface.mesh(181, 360).vertices;
     let heights = vertices.iter().map(|v| normal.dot(&v.coords));
     Support {
         normal,
-        offset: heights.fold(f64::INFINITY, f64::min),
+        offset_m: heights.fold(f64::INFINITY, f64::min),
     }
 }
 
@@ -54,7 +54,7 @@ fn the_lowest_link_is_that_of_the_meshes() {
         {
             let support = Support {
                 normal: UnitVector3::new_normalize(normal),
-                offset: -0.1 * k as f64,
+                offset_m: -0.1 * k as f64,
             };
             let palm = Isometry3::new(
                 Vector3::new(0.1, -0.2, 0.3),
