@@ -182,9 +182,14 @@ impl Grasps {
     }
 }
 
-/// Force-closed grasps, the best first; equal ones stay in the order in which they were found.
+/// Force-closed grasps: those with a hand first, and the best first among both kinds. Equal ones stay in
+/// the order in which they were found.
 pub fn ranked(mut grasps: Vec<Grasp>) -> Vec<Grasp> {
     grasps.retain(|g| g.quality() > 0.0);
-    grasps.sort_by(|a, b| b.quality().total_cmp(&a.quality()));
+    let without_hand = |g: &Grasp| g.hand().is_none();
+    grasps.sort_by(|a, b| {
+        let by_hand = without_hand(a).cmp(&without_hand(b));
+        by_hand.then_with(|| b.quality().total_cmp(&a.quality()))
+    });
     grasps
 }

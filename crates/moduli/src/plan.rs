@@ -62,7 +62,7 @@ pub struct Progress {
 /// The result of a plan.
 #[derive(Clone, Debug)]
 pub struct Planned {
-    /// Force-closed grasps, the best first.
+    /// Force-closed grasps as [`ranked`] orders them: those with a hand first.
     pub grasps: Vec<Grasp>,
     /// Outcomes of the transfers.
     pub transferred: TransferCounts,
