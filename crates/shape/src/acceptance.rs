@@ -227,7 +227,7 @@ mod tests {
         let worst = lifted.worst.unwrap();
         assert!(worst.centre.z > 0.06 && (worst.farthest_m - 0.02).abs() <= 1e-3);
         assert_eq!(lifted.verdict(), Verdict::Coarse);
-        assert!(lifted.to_string().contains("94.9 %"), "{lifted}");
+        assert!(lifted.to_string().contains("95.0 %"), "{lifted}");
     }
 
     #[test]

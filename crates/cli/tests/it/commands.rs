@@ -181,13 +181,16 @@ fn grasp_goes_from_a_cloud_to_grasps_and_a_page() {
     let file: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(file["convention"]["name"], "paper");
     let grasps = file["grasps"].as_array().unwrap();
-    let mut before = f64::INFINITY;
+    // Grasps with a hand come first, and the best first among both kinds.
+    let mut before = (false, f64::INFINITY);
     let mut kinds = std::collections::BTreeSet::new();
     for (i, grasp) in grasps.iter().enumerate() {
         assert_eq!(grasp["rank"], i + 1);
         let quality = grasp["quality"].as_f64().unwrap();
-        assert!(quality > 0.0 && quality <= before);
-        before = quality;
+        let without_hand = grasp["hand"].is_null();
+        assert!(quality > 0.0 && without_hand >= before.0);
+        assert!(without_hand > before.0 || quality <= before.1);
+        before = (without_hand, quality);
         kinds.insert(grasp["source"]["kind"].as_str().unwrap().to_owned());
         for contact in grasp["contacts_m"].as_array().unwrap() {
             // On the ellipsoid, in the frame of the cloud.

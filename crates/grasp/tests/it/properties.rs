@@ -224,8 +224,10 @@ proptest! {
         let found = quality(&contacts, &convention);
         prop_assert_eq!(facets.is_empty(), !found.closed);
         for (index, facet) in facets.iter().enumerate() {
-            // The first touches the ball, the others are within the band.
-            prop_assert!(facet.offset >= found.lower - 1e-9 && facet.offset <= found.upper + 0.02 + 1e-9);
+            // The first touches the ball of the polytope, the others are within the band. The polytope is
+            // within the convention's tolerance of the cones; the proved lower end may be nearer.
+            prop_assert!(facet.offset >= found.lower - 1e-2 - 1e-9);
+            prop_assert!(facet.offset <= found.upper + 0.02 + 1e-9);
             prop_assert!(index > 0 || facet.offset <= found.upper + 1e-9);
             let foot: grasp::Wrench = facet.carriers().iter().map(|c| c.wrench * c.weight).sum();
             prop_assert!((foot - facet.normal * facet.offset).norm() <= 1e-6);

@@ -89,7 +89,9 @@ pub fn reconstruct(
         let notes = notes(&scene);
         object = object.with_scene(scene, notes);
     }
-    if acceptance.verdict() == Verdict::Unexplained && !settings.accept_misfit {
+    // Heat moves the surface away from the points because the caller wants that.
+    let may_miss = settings.accept_misfit || settings.heat.is_some();
+    if acceptance.verdict() == Verdict::Unexplained && !may_miss {
         return Err(Error::Unexplained {
             notes: object.report().warnings.clone(),
         });

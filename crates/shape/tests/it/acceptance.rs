@@ -28,31 +28,26 @@ fn accepted(cloud: &PointCloud, fit: &Fit) -> Acceptance {
 #[test]
 #[ignore = "needs the scans of MODULI_DATA"]
 fn the_scans_are_accepted() {
-    for entry in index() {
+    let main = index().into_iter().filter(|entry| entry.class == "main");
+    let mut accepted_scans = 0;
+    for entry in main {
         let cloud = cloud(&entry.name);
-        let Ok(fit) = fit(&cloud, &SETTINGS) else {
-            println!("{} refused", entry.name);
-            continue;
-        };
-        let start = std::time::Instant::now();
-        let found = accepted(&cloud, &fit);
-        println!(
-            "{} {} {:?} rms {:.3} srms {:.3} noise {:.4} tol {:.3} unexplained {:.4} {:?}",
-            entry.class,
-            entry.name,
-            start.elapsed(),
-            1e3 * fit.rms,
-            1e3 * found.surface_rms_m,
-            1e3 * found.noise_m,
-            1e3 * found.tolerance_m,
-            found.unexplained_share,
-            found.worst
+        let found = accepted(&cloud, &fit(&cloud, &SETTINGS).unwrap());
+        assert!(
+            found.verdict() != Verdict::Unexplained,
+            "{}: {found}",
+            entry.name
         );
+        accepted_scans += 1;
     }
+    assert_eq!(accepted_scans, 14);
 }
 
-/// Points spread over parts by area, each part a map of a pair of numbers in 0..1.
-fn spread(count: usize, parts: &[(f64, &dyn Fn(f64, f64) -> Vector3<f64>)]) -> PointCloud {
+/// An area, and a map of a pair of numbers in 0..1 to a place on it.
+type Part<'a> = (f64, &'a dyn Fn(f64, f64) -> Vector3<f64>);
+
+/// Points spread over parts by area.
+fn spread(count: usize, parts: &[Part<'_>]) -> PointCloud {
     let mut rng = ChaCha8Rng::seed_from_u64(2);
     let whole: f64 = parts.iter().map(|p| p.0).sum();
     let mut point = || {
@@ -109,15 +104,10 @@ fn needles_crosses_and_clouds_without_a_surface_are_not_accepted() {
         ),
     ];
     for (name, cloud) in clouds {
+        // A fit may refuse such a cloud before its residuals are looked at.
         if let Ok(fit) = fit(&cloud, &SETTINGS) {
             let found = accepted(&cloud, &fit);
-            println!("{name} {found:?}");
             assert!(found.verdict() == Verdict::Unexplained, "{name}: {found}");
-        } else {
-            println!(
-                "{name} refused {:?}",
-                fit(&cloud, &SETTINGS).err().map(|e| e.to_string())
-            );
         }
     }
 }
@@ -131,9 +121,7 @@ fn the_order_of_the_points_changes_no_verdict() {
         let [a, b] = [&first, &second].map(|c| accepted(c, &fit(c, &SETTINGS).unwrap()));
         assert_eq!(a.verdict(), b.verdict(), "{name}");
         assert!((a.noise_m - b.noise_m).abs() <= 1e-9, "{name}");
-        assert!(
-            (a.unexplained_share - b.unexplained_share).abs() <= 1e-3,
-            "{name}"
-        );
+        let shares = [a.unexplained_share, b.unexplained_share];
+        assert!((shares[0] - shares[1]).abs() <= 1e-2, "{name}: {shares:?}");
     }
 }

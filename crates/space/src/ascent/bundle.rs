@@ -8,8 +8,8 @@ use crate::quality::{LinearPieces, dot, norm};
 /// The dual minimises Σ λ_j excess_j + Σ ν_k slack_k + ρ/2 |Σ λ_j g_j + Σ ν_k a_k|² over λ in the
 /// simplex and ν ≥ 0; then u = ρ (Σ λ_j g_j + Σ ν_k a_k).
 ///
-/// Solved by an active-set method, as in Wolfe's algorithm for the nearest point. At most dimension
-/// + 1 pieces and limits have positive weight. The best weights of a given set solve a linear
+/// Solved by an active-set method, as in Wolfe's algorithm for the nearest point. In n dimensions at
+/// most n + 1 pieces and limits have positive weight. The best weights of a given set solve a linear
 /// system. Each exchange lowers the dual, so the method terminates.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bundle {
