@@ -31,7 +31,13 @@ pub(crate) fn write(
     ranked: &[Grasp],
     facts: Vec<String>,
 ) -> Result<Written, Failure> {
-    let file = measure.grasps_file(hand, ranked);
+    let mut file = measure.grasps_file(hand, ranked);
+    if let Some(cloud) = cloud {
+        let name = measure.object().name();
+        measure
+            .add_evidence(hand, &mut file.grasps, ranked, cloud)
+            .map_err(|e| Failure::refused(format!("{name}: {e}")))?;
+    }
     let written = Written {
         grasps_json: folder.join("grasps.json"),
         grasps_yaml: folder.join("grasps.yaml"),

@@ -5,11 +5,13 @@ use std::collections::BTreeMap;
 use hand::{Drive, Hand, Joint};
 use record::grasps::ObjectRecord;
 use record::grasps::{
-    AssessmentRecord, ConventionRecord, ExecutionRecord, GRASPS_VERSION, HandRecord, JointRecord,
-    PoseRecord, SourceRecord,
+    AssessmentRecord, ContactRecord, ConventionRecord, ExecutionRecord, GRASPS_VERSION, HandRecord,
+    JointRecord, PoseRecord, SourceRecord,
 };
 use record::{GraspRecord, GraspsFile};
+use shape::PointCloud;
 
+use crate::error::Error;
 use crate::grasp::{Grasp, HandPlacement, Source};
 use crate::measure::Measure;
 use crate::records::{contact_model_record, convention_record, joint_record, support_record};
@@ -25,6 +27,35 @@ impl Measure<'_> {
         };
         self.for_hand(hand)
             .file_of(ranked.iter().enumerate().map(record).collect())
+    }
+
+    /// Adds to the records of a hand's grasps, in the same order, their robust quality and what a cloud says of
+    /// each contact ([`Measure::evidence`]).
+    ///
+    /// # Errors
+    /// A robust quality cannot be computed.
+    pub fn add_evidence(
+        &self,
+        hand: &Hand,
+        records: &mut [GraspRecord],
+        grasps: &[Grasp],
+        cloud: &PointCloud,
+    ) -> Result<(), Error> {
+        let measure = self.for_hand(hand);
+        for (record, grasp) in records.iter_mut().zip(grasps) {
+            let evidence = measure.evidence(grasp, cloud);
+            record.assessment.robust_quality = Some(measure.robust(grasp, &evidence)?);
+            let contacts = evidence.iter().enumerate().map(|(i, found)| ContactRecord {
+                point_m: record.contacts_m[i],
+                inward_normal: record.inward_normals[i],
+                direction: record.directions[i],
+                distance_to_cloud_m: Some(found.distance),
+                normal_spread_deg: found.seen.then(|| found.normal_spread.to_degrees()),
+                seen: Some(found.seen),
+            });
+            record.assessment.contacts = contacts.collect();
+        }
+        Ok(())
     }
 
     /// The file of grasps that are records already.

@@ -1,9 +1,9 @@
 //! How quality is measured on one object, and when a grasp is stable.
 
-use grasp::{Contact, Convention, Epsilon, GraspModel, QualityError, Workspace};
+use grasp::{Contact, Convention, Epsilon, GraspModel, QualityError, Uncertainty, Workspace};
 use hand::{Hand, TipModel};
 use nalgebra::Point3;
-use shape::Support;
+use shape::{Evidence, PAD_RADIUS, PointCloud, Support};
 use space::point::contacts_on;
 use space::{MonotoneAscent, Objective, ResolvedConvention};
 use sph::Direction;
@@ -186,6 +186,41 @@ impl<'a> Measure<'a> {
     pub fn grasp_at(&self, points: &[[f64; 3]]) -> Result<Grasp, Error> {
         let (directions, _) = self.object.directions_of(points)?;
         self.grasp(&directions, Source::Given)
+    }
+
+    /// What a cloud, in its own frame, says of the surface at each contact of a grasp, within a pad of
+    /// 5 mm radius.
+    pub fn evidence(&self, grasp: &Grasp, cloud: &PointCloud) -> Vec<Evidence> {
+        let normals = grasp.contacts().iter().map(|c| c.inward_normal);
+        let places = grasp.contacts_in_cloud().into_iter();
+        places
+            .zip(normals)
+            .map(|(place, normal)| shape::evidence(cloud.points(), &place, &normal, PAD_RADIUS))
+            .collect()
+    }
+
+    /// A proved lower bound of the epsilon quality on every surface whose contacts and normals agree with
+    /// the evidence, one entry per contact: [`grasp::robust_quality`] with the distance of the data as the
+    /// error of the position and the spread of its normals as that of the normal. An unseen contact
+    /// carries nothing; a grasp on edges has 0.
+    ///
+    /// # Errors
+    /// There is another number of entries than of contacts, or the quality cannot be computed.
+    pub fn robust(&self, grasp: &Grasp, evidence: &[Evidence]) -> Result<f64, Error> {
+        let known: Vec<Uncertainty> = evidence
+            .iter()
+            .map(|e| Uncertainty {
+                position: e.distance,
+                normal: e.normal_spread,
+            })
+            .collect();
+        let centre = self.centre();
+        let model = GraspModel::new(grasp.contacts(), &centre, self.convention());
+        Ok(grasp::robust_quality(
+            &model,
+            &known,
+            &mut Workspace::new(),
+        )?)
     }
 
     /// Raises the quality of a grasp by moving its contacts over the surface; never lowers it. The

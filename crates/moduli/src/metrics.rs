@@ -65,22 +65,30 @@ impl Metrics {
         centre: &Point3<f64>,
         convention: &Convention,
     ) -> Result<Self, Error> {
-        let model = GraspModel::new(contacts, centre, convention);
-        let polygonal = matches!(convention.edges, Edges::Polygon(_));
+        Self::of_model(&GraspModel::new(contacts, centre, convention))
+    }
+
+    /// Measures a grasp with the contact models that it names. The least friction is that of point
+    /// contacts whatever the models.
+    ///
+    /// # Errors
+    /// As [`Metrics::of`], and if a number of a contact model is out of range.
+    pub fn of_model(model: &GraspModel<'_>) -> Result<Self, Error> {
+        let polygonal = matches!(model.convention.edges, Edges::Polygon(_));
         let mut workspace = Workspace::new();
-        let epsilon = grasp::epsilon(&model, &mut workspace)?;
+        let epsilon = grasp::epsilon(model, &mut workspace)?;
         Ok(Self {
             epsilon,
-            volume: polygonal.then(|| grasp::volume(&model)).transpose()?,
-            linf: grasp::epsilon_linf(&model, &mut workspace)?.quality,
+            volume: polygonal.then(|| grasp::volume(model)).transpose()?,
+            linf: grasp::epsilon_linf(model, &mut workspace)?.quality,
             min_weight: if polygonal {
-                grasp::min_weight(&model)?
+                grasp::min_weight(model)?
             } else {
                 None
             },
-            least_friction: grasp::friction_needed(&model, MOST_FRICTION, &mut workspace)?.closure,
-            smallest_singular_value: grasp::smallest_singular_value(&model)?,
-            normal_force_per_load: normal_force_per_load(&model)?,
+            least_friction: grasp::friction_needed(model, MOST_FRICTION, &mut workspace)?.closure,
+            smallest_singular_value: grasp::smallest_singular_value(model)?,
+            normal_force_per_load: normal_force_per_load(model)?,
         })
     }
 

@@ -28,6 +28,7 @@ pub mod acceptance;
 pub mod algebra;
 mod crossing;
 pub mod embedding;
+mod evidence;
 pub mod fit;
 mod hole_filling;
 mod immersion;
@@ -57,6 +58,7 @@ pub mod visibility;
 mod voxel_grid;
 
 pub use acceptance::{Acceptance, Verdict};
+pub use evidence::{Evidence, PAD_RADIUS, evidence};
 pub use fit::{Fit, FitError, FitSettings};
 pub use immersion::{Immersion, SphericalError};
 pub use injectivity::Embedding;

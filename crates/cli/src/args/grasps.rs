@@ -15,7 +15,7 @@ pub(crate) struct QualityOptions {
     pub(crate) grasps: PathBuf,
     /// Also compute volume, L-infinity, min-weight, least friction, smallest singular value and the
     /// normal force per load, one named column each.
-    #[arg(long, conflicts_with_all = ["metric", "contact", "certificate"])]
+    #[arg(long, conflicts_with_all = ["metric", "certificate"])]
     pub(crate) all: bool,
     /// The measure of quality.
     #[arg(long, value_enum, default_value_t = Metric::Epsilon)]

@@ -61,7 +61,9 @@ pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failu
     let path = &options.grasps;
     let rows = if options.all {
         let all = |grasp: &Grasp, _: &mut Workspace| {
-            let metrics = Metrics::of(&grasp.contacts, &grasp.centre, &convention)?;
+            let models = tips.of_contacts(convention.friction, grasp.contacts.len());
+            let model = grasp.under(&convention).with_contact_models(&models);
+            let metrics = Metrics::of_model(&model)?;
             let cells = metrics.row(&convention).to_vec();
             Ok(Row::new(&metrics.epsilon, cells))
         };
@@ -120,9 +122,8 @@ fn convention(
         (Some(rule), None) => input::changed(rule, said)?,
         _ => named,
     };
-    // FRoGGeR's own tangent frames. With another torque length the number belongs to no system, and the
-    // frames are those of every convention.
-    if said.convention.as_deref() == Some("frogger") && said.torque_length.is_none() {
+    // FRoGGeR's own tangent frames, which belong to the convention whatever other options change.
+    if said.convention.as_deref() == Some("frogger") {
         convention.tangent = TangentRule::Projected(Vector3::new(1.2, 2.3, 3.4));
     }
     // The centre comes with every grasp.

@@ -69,6 +69,16 @@ fn contacts_with_a_size_close_two_fingers() {
     assert_eq!(closed("point"), 0);
     assert_eq!(closed("soft:0.01"), 1);
     assert_eq!(closed("patch:0.01"), 1);
+    let all = say(
+        folder.path(),
+        &["pair.csv", "--all", "--contact", "soft:0.01"],
+    );
+    let one = say(folder.path(), &["pair.csv", "--contact", "soft:0.01"]);
+    assert_eq!(
+        (&all["closed"], &all["mean"]),
+        (&one["closed"], &one["mean"])
+    );
+    assert!(all["rows"][0][4].as_f64().unwrap() > 0.0, "{all}");
     let wrong = moduli(
         folder.path(),
         &["quality", "pair.csv", "--contact", "soft:-1"],
@@ -91,6 +101,9 @@ fn metrics_and_frames_of_frogger() {
         (frogger["mean"].as_f64().unwrap() - 0.254_964).abs() <= 5e-7,
         "{frogger}"
     );
+    // The frames belong to the convention, not to its default torque length.
+    let named = ["g.csv", "--convention", "frogger", "--torque-length", "1"];
+    assert_eq!(say(folder.path(), &named)["mean"], frogger["mean"]);
     let weight = say(folder.path(), &["g.csv", "--metric", "min-weight"]);
     assert_eq!(weight["metric"], "min-weight");
     assert!(weight["mean"].as_f64().unwrap() > 0.0);
