@@ -182,12 +182,12 @@ fn grasp_goes_from_a_cloud_to_grasps_and_a_page() {
     assert_eq!(file["convention"]["name"], "paper");
     let grasps = file["grasps"].as_array().unwrap();
     // Grasps with a hand come first, and the best first among both kinds.
-    let mut before = (false, f64::INFINITY);
+    let mut before = (0, f64::INFINITY);
     let mut kinds = std::collections::BTreeSet::new();
     for (i, grasp) in grasps.iter().enumerate() {
         assert_eq!(grasp["rank"], i + 1);
         let quality = grasp["quality"].as_f64().unwrap();
-        let without_hand = grasp["hand"].is_null();
+        let without_hand = u8::from(grasp["hand"].is_null());
         assert!(quality > 0.0 && without_hand >= before.0);
         assert!(without_hand > before.0 || quality <= before.1);
         before = (without_hand, quality);
