@@ -3,7 +3,10 @@
 use std::path::Path;
 
 use grasp::{Convention, Edges};
-use moduli::{Object, Reconstruction, ReconstructionSettings, SphericalObject, reconstruct};
+use moduli::{
+    Object, Reconstruction, ReconstructionSettings, SphericalObject, object_points, reconstruct,
+    scene_notes,
+};
 use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -38,11 +41,19 @@ pub(crate) fn stem(path: &Path) -> String {
     stem.map_or_else(|| "object".to_owned(), |s| s.to_string_lossy().into_owned())
 }
 
-/// A cloud in metres, with warnings about what was dropped and about units that look wrong.
+/// A cloud as a file holds it.
+pub(crate) struct Scan {
+    /// Its points, metres.
+    pub(crate) cloud: PointCloud,
+    /// What was dropped and what looks wrong, a sentence each.
+    pub(crate) warnings: Vec<String>,
+}
+
+/// A cloud in metres. Its warnings go to standard error too.
 ///
 /// A mesh is sampled by area; the same seed gives the same points. Where no unit was given, an extent
 /// that no object for a hand has is refused.
-pub(crate) fn cloud(path: &Path, options: &CloudOptions, seed: u64) -> Result<PointCloud, Failure> {
+pub(crate) fn scan(path: &Path, options: &CloudOptions, seed: u64) -> Result<Scan, Failure> {
     let mut loaded = load(path)?;
     match options.unit {
         Some(unit) => loaded = loaded.scaled(unit.metres()),
@@ -53,17 +64,19 @@ pub(crate) fn cloud(path: &Path, options: &CloudOptions, seed: u64) -> Result<Po
             }
         }
     }
-    for warning in &loaded.warnings {
-        let hint = match warning {
-            Warning::Unit { .. } => " (--unit mm, cm, m, in)",
-            _ => "",
-        };
-        warn(format!("{}: {warning}{hint}", path.display()));
+    let sentence = |warning: &Warning| match warning {
+        Warning::Unit { .. } => format!("{warning} (--unit mm, cm, m, in)"),
+        _ => warning.to_string(),
+    };
+    let warnings: Vec<String> = loaded.warnings.iter().map(sentence).collect();
+    for warning in &warnings {
+        warn(format!("{}: {warning}", path.display()));
     }
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    loaded
+    let cloud = loaded
         .cloud(options.samples, &mut rng)
-        .map_err(|e| Failure::input(path, e))
+        .map_err(|e| Failure::input(path, e))?;
+    Ok(Scan { cloud, warnings })
 }
 
 /// A cloud or mesh in the unit of its file.
@@ -77,10 +90,10 @@ pub(crate) fn loaded(path: &Path, bytes: &[u8]) -> Result<Loaded, Failure> {
     shape::io::read_cloud(bytes, extension).map_err(|e| Failure::input(path, e))
 }
 
-/// The object among the points of a cloud. Its warnings go to standard error; they are in
-/// [`moduli::FitReport`] too. Refusals say what to try.
+/// The object among the points of a scan. What is new to say goes to standard error; all warnings are in
+/// [`moduli::FitReport`]. Refusals say what to try.
 pub(crate) fn fitted(
-    cloud: &PointCloud,
+    scan: &Scan,
     name: &str,
     options: &CloudOptions,
 ) -> Result<Reconstruction, Failure> {
@@ -93,11 +106,25 @@ pub(crate) fn fitted(
         scene: options.scene.settings(),
         accept_misfit: options.scene.accept_misfit,
     };
-    let made = reconstruct(name, cloud, &settings).map_err(|e| refused(name, e))?;
+    let mut made = reconstruct(name, &scan.cloud, &settings).map_err(|e| refused(name, e))?;
     for warning in &made.object.report().warnings {
         warn(format!("{name}: {warning}"));
     }
+    made.object = made.object.with_warnings(scan.warnings.iter().cloned());
     Ok(made)
+}
+
+/// The points of the object in a scan, and what is to be said about the file and the scene.
+pub(crate) fn isolated(scan: Scan, name: &str, options: &CloudOptions) -> Result<Scan, Failure> {
+    let settings = options.scene.settings();
+    let (cloud, scene) =
+        object_points(&scan.cloud, settings.as_ref()).map_err(|e| refused(name, e))?;
+    let mut warnings = scan.warnings;
+    for note in scene.iter().flat_map(scene_notes) {
+        warn(format!("{name}: {note}"));
+        warnings.push(note);
+    }
+    Ok(Scan { cloud, warnings })
 }
 
 /// Why a cloud has no object, and what to try.

@@ -56,7 +56,10 @@ pub use crate::library::{Library, Neighbour, TransferOptions};
 pub use crate::library_entry::{Kept, separation};
 pub use crate::measure::Measure;
 pub use crate::metrics::Metrics;
-pub use crate::object::{FitReport, Object, Reconstruction, ReconstructionSettings, reconstruct};
+pub use crate::object::{
+    FitReport, Object, Reconstruction, ReconstructionSettings, object_points, reconstruct,
+    scene_notes,
+};
 pub use crate::plan::{Plan, Planned, Progress, Stage, TransferCounts};
 pub use crate::spherical_object::{SphericalObject, SurfacePoint};
 pub use crate::synthesis::Poses;

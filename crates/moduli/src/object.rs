@@ -23,7 +23,9 @@ use crate::frame::CloudFrame;
 use crate::records::{scene_record, stored_shape, stored_support, support_record};
 
 use reconstruction::accepted;
-pub use reconstruction::{Reconstruction, ReconstructionSettings, reconstruct};
+pub use reconstruction::{
+    Reconstruction, ReconstructionSettings, object_points, reconstruct, scene_notes,
+};
 
 /// Share of the directions without a point above which the surface there is said to be a guess.
 const GUESSED: f64 = 0.1;

@@ -88,12 +88,12 @@ pub(crate) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> 
 }
 
 fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Failure> {
-    let cloud = input::cloud(path, &options.cloud, seed)?;
+    let scan = input::scan(path, &options.cloud, seed)?;
     let start = Instant::now();
-    let made = input::fitted(&cloud, &path.display().to_string(), &options.cloud)?;
+    let made = input::fitted(&scan, &path.display().to_string(), &options.cloud)?;
     let (object, fit) = (made.object, made.fit);
     let seconds = start.elapsed().as_secs_f64();
-    let points = cloud.points().len();
+    let points = scan.cloud.points().len();
     let report = object.report().clone();
     let isolated = report.scene.as_ref().map_or(0, |s| s.dropped.isolated);
     if let Some(target) = target(path, options) {

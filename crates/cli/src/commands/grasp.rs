@@ -18,6 +18,7 @@ use shape::PointCloud;
 
 use crate::args::{Common, GraspOptions};
 use crate::failure::Failure;
+use crate::input::Scan;
 use crate::outcomes::{reasons, sentence, why_none};
 use crate::result::Written;
 use crate::{hands, input, library_folder, output, page, result};
@@ -72,18 +73,15 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
     };
     let folders = folders(options)?;
     if options.clouds.is_empty() {
-        let (name, cloud) = builtin_object(common)?;
+        let (name, scan) = builtin_object(common)?;
         let folder = options.output.clone();
-        return shared.grasp(
-            &name,
-            &cloud,
-            &folder.unwrap_or_else(|| default_folder(&name)),
-        );
+        let folder = folder.unwrap_or_else(|| default_folder(&name));
+        return shared.grasp(&name, &scan, &folder);
     }
     let mut failures = Vec::new();
     for (path, folder) in options.clouds.iter().zip(&folders) {
-        let done = input::cloud(path, &options.fit, common.seed)
-            .and_then(|cloud| shared.grasp(&input::stem(path), &cloud, folder));
+        let done = input::scan(path, &options.fit, common.seed)
+            .and_then(|scan| shared.grasp(&input::stem(path), &scan, folder));
         failures.extend(done.err());
     }
     Failure::all(failures)
@@ -120,10 +118,10 @@ struct Shared<'a> {
 
 impl Shared<'_> {
     /// Plans grasps on a cloud and writes the results into a folder.
-    fn grasp(&self, name: &str, cloud: &PointCloud, folder: &Path) -> Result<(), Failure> {
+    fn grasp(&self, name: &str, scan: &Scan, folder: &Path) -> Result<(), Failure> {
         let start = Instant::now();
         let (options, common, hand) = (self.options, self.common, &self.hand);
-        let made = input::fitted(cloud, name, &options.fit)?;
+        let made = input::fitted(scan, name, &options.fit)?;
         let cloud = &made.cloud;
         let object = made.object.with_warnings(self.warnings.iter().cloned());
         let refused = |e: moduli::Error| Failure::refused(format!("{name}: {e}"));
@@ -264,12 +262,16 @@ impl Bars {
 }
 
 /// The built-in object that no library holds.
-fn builtin_object(common: &Common) -> Result<(String, PointCloud), Failure> {
+fn builtin_object(common: &Common) -> Result<(String, Scan), Failure> {
     let unseen = catalogue::by_id(UNSEEN)
         .ok_or_else(|| Failure::other(format!("the built-in object {UNSEEN} is missing")))?;
     let cloud = PointCloud::new(unseen.scan(common.seed))
         .map_err(|e| Failure::other(format!("the built-in object {UNSEEN}: {e}")))?;
-    Ok((unseen.name.replace(' ', "-"), cloud))
+    let scan = Scan {
+        cloud,
+        warnings: Vec::new(),
+    };
+    Ok((unseen.name.replace(' ', "-"), scan))
 }
 
 /// Largest distance from a contact to the nearest point of the cloud, metres.

@@ -211,8 +211,8 @@ impl<'a> Maker<'a> {
     fn make(&self, path: &Path, key: &Key) -> Result<LibraryObjectRecord, Failure> {
         let options = self.options;
         let name = input::stem(path);
-        let cloud = input::cloud(path, &options.fit, self.common.seed)?;
-        let object = input::fitted(&cloud, &name, &options.fit)?.object;
+        let scan = input::scan(path, &options.fit, self.common.seed)?;
+        let object = input::fitted(&scan, &name, &options.fit)?.object;
         let refused = |e: moduli::Error| Failure::refused(format!("{name}: {e}"));
         let measure = object.measure(&self.convention).map_err(refused)?;
         let poses = Poses {

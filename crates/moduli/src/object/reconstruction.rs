@@ -65,19 +65,7 @@ pub fn reconstruct(
     cloud: &PointCloud,
     settings: &ReconstructionSettings,
 ) -> Result<Reconstruction, Error> {
-    let points = cloud.points();
-    let (indices, scene) = match &settings.scene {
-        Some(rule) => {
-            let mut scene = analyse(points, rule)?;
-            (std::mem::take(&mut scene.object), Some(scene))
-        }
-        None => (distinct(points).iter().map(|row| row.index).collect(), None),
-    };
-    let cloud = if indices.len() == points.len() {
-        cloud.clone()
-    } else {
-        PointCloud::new(indices.iter().map(|i| points[*i]).collect())?
-    };
+    let (cloud, scene) = object_points(cloud, settings.scene.as_ref())?;
     let mut fit = shape::fit::fit(&cloud, &settings.fit)?;
     if let Some(sigma) = settings.heat {
         fit = fit.smoothed(&cloud, sigma)?;
@@ -86,7 +74,7 @@ pub fn reconstruct(
     let acceptance = accepted(&object, &fit, &cloud);
     let mut object = object.with_acceptance(acceptance);
     if let Some(scene) = scene {
-        let notes = notes(&scene);
+        let notes = scene_notes(&scene);
         object = object.with_scene(scene, notes);
     }
     // Heat moves the surface away from the points because the caller wants that.
@@ -97,6 +85,31 @@ pub fn reconstruct(
         });
     }
     Ok(Reconstruction { object, fit, cloud })
+}
+
+/// The points of the object among those of a scene, each distinct one once, and what else was there.
+/// Without settings all points are the object's.
+///
+/// # Errors
+/// No piece of the cloud dominates, or too few points are left.
+pub fn object_points(
+    cloud: &PointCloud,
+    settings: Option<&SceneSettings>,
+) -> Result<(PointCloud, Option<Scene>), Error> {
+    let points = cloud.points();
+    let (indices, scene) = match settings {
+        Some(rule) => {
+            let mut scene = analyse(points, rule)?;
+            (std::mem::take(&mut scene.object), Some(scene))
+        }
+        None => (distinct(points).iter().map(|row| row.index).collect(), None),
+    };
+    let object = if indices.len() == points.len() {
+        cloud.clone()
+    } else {
+        PointCloud::new(indices.iter().map(|i| points[*i]).collect())?
+    };
+    Ok((object, scene))
 }
 
 /// How well the surface of a fit explains its cloud.
@@ -127,7 +140,7 @@ fn measure(
 }
 
 /// What was left out of a scene, a sentence each.
-fn notes(scene: &Scene) -> Vec<String> {
+pub fn scene_notes(scene: &Scene) -> Vec<String> {
     let mut notes = Vec::new();
     let dropped = &scene.dropped;
     if dropped.support > 0

@@ -112,5 +112,5 @@ fn points(path: &Path, options: &FitOptions, common: &Common) -> Result<PointClo
             ),
         ));
     }
-    input::cloud(path, &options.cloud, common.seed)
+    Ok(input::scan(path, &options.cloud, common.seed)?.cloud)
 }

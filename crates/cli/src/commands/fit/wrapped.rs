@@ -58,8 +58,13 @@ pub(super) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> 
 }
 
 fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<WrappedLine, Failure> {
-    let cloud = input::cloud(path, &options.cloud, seed)?;
+    let scan = input::scan(path, &options.cloud, seed)?;
+    let points = scan.cloud.points().len();
     let start = Instant::now();
+    let input::Scan {
+        cloud,
+        mut warnings,
+    } = input::isolated(scan, &path.display().to_string(), &options.cloud)?;
     let settings = SphericalSettings {
         degree: options.cloud.degree,
         lambda: options.cloud.lambda,
@@ -73,7 +78,11 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<WrappedLine, 
     });
     let closed_holes = closed_holes.collect();
     let max_abs_m = fit.surface_max;
-    let (embedding, warnings) = verdict(&fit);
+    let (embedding, undecided) = verdict(&fit);
+    for warning in &undecided {
+        output::warn(format!("{}: {warning}", path.display()));
+    }
+    warnings.extend(undecided);
     let object = SphericalObject::from_cloud_fit(&input::stem(path), fit);
     let seconds = start.elapsed().as_secs_f64();
     if let Some(target) = target(path, options) {
@@ -83,7 +92,7 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<WrappedLine, 
     let shape = object.shape();
     Ok(WrappedLine {
         cloud: path.display().to_string(),
-        points: cloud.points().len(),
+        points,
         points_fitted: object.points(),
         model: "spherical",
         degree: shape.degree(),
@@ -134,12 +143,9 @@ fn say(path: &Path, line: &WrappedLine) {
     ));
     if line.points_fitted < line.points {
         output::say(format!(
-            "  {} points are hidden from outside or far from the surface and were left out",
+            "  {} points were left out: not of the object, hidden from outside, or far from the surface",
             line.points - line.points_fitted
         ));
-    }
-    for warning in &line.warnings {
-        output::warn(format!("{}: {warning}", path.display()));
     }
     for hole in &line.closed_holes {
         let [x, y, z] = hole.centre_m;
