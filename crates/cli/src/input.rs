@@ -145,7 +145,10 @@ fn refused(name: &str, error: moduli::Error) -> Failure {
             "; choose one with --piece N, or fit all points with --scene off"
         }
         moduli::Error::Unexplained { .. } => {
-            "; cut away what is not the object, or check whether every direction from the mean of the points meets the object once; --accept-misfit keeps the surface"
+            "; cut away what is not the object; if a direction from the mean of the points meets the object more than once, `moduli fit --model spherical` fits it; --accept-misfit keeps this surface"
+        }
+        moduli::Error::Fit(FitError::NotStarShaped { .. } | FitError::OpenContainer { .. }) => {
+            "; `moduli fit --model spherical` fits such objects"
         }
         _ => "",
     };
