@@ -122,8 +122,10 @@ fn convention(
         (Some(rule), None) => input::changed(rule, said)?,
         _ => named,
     };
-    // FRoGGeR's own tangent frames, which belong to the convention whatever other options change.
-    if said.convention.as_deref() == Some("frogger") {
+    // FRoGGeR's own tangent frames. Under another torque length than its own the number belongs to no
+    // system, and the frames are those of every convention.
+    let own_length = Convention::named("frogger").map(|own| own.torque_length);
+    if said.convention.as_deref() == Some("frogger") && own_length == Ok(convention.torque_length) {
         convention.tangent = TangentRule::Projected(Vector3::new(1.2, 2.3, 3.4));
     }
     // The centre comes with every grasp.

@@ -113,3 +113,26 @@ fn metrics_and_frames_of_frogger() {
     );
     assert!(needed["mean"].as_f64().unwrap() < 1e-3, "{needed}");
 }
+
+#[test]
+fn frogger_under_a_foreign_torque_length_has_the_frames_of_every_convention() {
+    let folder = tempfile::tempdir().unwrap();
+    let row = "0.03,0,0.01,-0.02,0.03,0,-0.01,-0.03,-0.01,-1,0,0,0.6,-0.8,0,0.28,0.96,0,0,0,0\n";
+    std::fs::write(folder.path().join("g.csv"), row).unwrap();
+    let under = |name: &str, length: &str| {
+        let options = [
+            "--edges",
+            "4",
+            "--friction",
+            "0.7",
+            "--torque-length",
+            length,
+        ];
+        let mut words = vec!["g.csv", "--convention", name];
+        words.extend(options);
+        say(folder.path(), &words)["mean"].as_f64().unwrap()
+    };
+    // FRoGGeR's edges have unit length; `openrave` has the same and the usual frames.
+    assert_eq!(under("frogger", "0.02"), under("openrave", "0.02"));
+    assert!((under("frogger", "1") - under("openrave", "1")).abs() > 1e-6);
+}
