@@ -11,7 +11,7 @@ use crate::basis::Jet;
 use crate::coefficients::Coefficients;
 use crate::direction::Direction;
 use crate::double_fourier::{DoubleFourier, FineGrid};
-use crate::kernel::TAPS;
+use crate::kernel::{TAPS, Taps};
 use crate::multiply_add::multiply_add;
 use crate::rotation::{cyclic, rotate};
 
@@ -134,7 +134,7 @@ impl Field {
 
     /// f(p), in half the time of [`Field::jet`].
     pub fn value(&self, p: &Direction) -> f64 {
-        let [value, ..] = self.read::<1>(&Place::new(p));
+        let [[value, ..]] = read::<1, 1>(&[self], self, &Place::new(p));
         self.mean + value
     }
 
@@ -143,7 +143,7 @@ impl Field {
     /// Leaving out the Hessian would save nothing, since the gradient needs the same rows of the window.
     pub fn jet(&self, p: &Direction) -> Jet {
         let place = Place::new(p);
-        let d = self.read::<3>(&place);
+        let [d] = read::<3, 1>(&[self], self, &place);
         let mut jet = place.jet(&d, self.steps_a_radian());
         jet.value += self.mean;
         if place.tilted {
@@ -153,20 +153,76 @@ impl Field {
         }
     }
 
+    /// The jets of several functions at one point.
+    ///
+    /// The weights of the window are computed once, so that three functions take about twice the
+    /// time of one. Each is the same as [`Field::jet`] gives, to the bit.
+    ///
+    /// # Errors
+    /// There are no fields, or they differ in degree.
+    pub fn jets<const N: usize>(fields: [&Field; N], p: &Direction) -> Result<[Jet; N], FieldError> {
+        let (first, place) = (shared_grid(&fields)?, Place::new(p));
+        let parts = read::<3, N>(&fields, first, &place);
+        let mut jets = parts.map(|d| place.jet(&d, first.steps_a_radian()));
+        for (jet, field) in jets.iter_mut().zip(fields) {
+            jet.value += field.mean;
+            if place.tilted {
+                *jet = unturned_jet(jet);
+            }
+        }
+        Ok(jets)
+    }
+
+    /// The values of several functions at one point; see [`Field::jets`].
+    ///
+    /// # Errors
+    /// There are no fields, or they differ in degree.
+    pub fn values<const N: usize>(
+        fields: [&Field; N],
+        p: &Direction,
+    ) -> Result<[f64; N], FieldError> {
+        let first = shared_grid(&fields)?;
+        let parts = read::<1, N>(&fields, first, &Place::new(p));
+        let mut values = parts.map(|[value, ..]| value);
+        for (value, field) in values.iter_mut().zip(fields) {
+            *value += field.mean;
+        }
+        Ok(values)
+    }
+
     fn steps_a_radian(&self) -> f64 {
         self.fourier.steps() as f64 / std::f64::consts::TAU
     }
+}
 
-    /// f without its mean, f_θ, f_φ, f_θθ, f_θφ, f_φφ in grid steps, up to the derivative PARTS − 1.
-    fn read<const PARTS: usize>(&self, place: &Place) -> [f64; 6] {
-        let n = self.steps_a_radian();
-        self.arch.dispatch(Read::<PARTS> {
-            fourier: &self.fourier,
-            grid: &self.charts[usize::from(place.tilted)].values,
-            theta: place.sin.atan2(place.q.z) * n,
-            phi: place.phi() * n,
-        })
+/// The first field, if all have its degree and so its grid.
+fn shared_grid<'a>(fields: &[&'a Field]) -> Result<&'a Field, FieldError> {
+    let first = fields.first().ok_or(FieldError::Empty)?;
+    let first_degree = first.degree();
+    match fields.iter().position(|f| f.degree() != first_degree) {
+        Some(index) => Err(FieldError::Mismatch {
+            index,
+            degree: fields[index].degree(),
+            first_degree,
+        }),
+        None => Ok(first),
     }
+}
+
+/// f without its mean, f_θ, f_φ, f_θθ, f_θφ, f_φφ in grid steps, up to the derivative PARTS − 1, of
+/// each function; all have the grid of `first`.
+fn read<const PARTS: usize, const N: usize>(
+    fields: &[&Field; N],
+    first: &Field,
+    place: &Place,
+) -> [[f64; 6]; N] {
+    let n = first.steps_a_radian();
+    first.arch.dispatch(Read::<PARTS, N> {
+        fourier: &first.fourier,
+        grids: fields.map(|f| &*f.charts[usize::from(place.tilted)].values),
+        theta: place.sin.atan2(place.q.z) * n,
+        phi: place.phi() * n,
+    })
 }
 
 /// A point in the chart whose poles are farther away, so that sin θ ≥ √½.
@@ -242,47 +298,63 @@ fn unturned_jet(jet: &Jet) -> Jet {
     }
 }
 
-/// The window sums at one place, with derivatives per grid step.
-struct Read<'a, const PARTS: usize> {
+/// The window sums of several grids at one place, with derivatives per grid step.
+struct Read<'a, const PARTS: usize, const N: usize> {
     fourier: &'a DoubleFourier,
-    grid: &'a [f64],
+    grids: [&'a [f64]; N],
     theta: f64,
     phi: f64,
 }
 
-impl<const PARTS: usize> WithSimd for Read<'_, PARTS> {
-    type Output = [f64; 6];
+impl<const PARTS: usize, const N: usize> WithSimd for Read<'_, PARTS, N> {
+    type Output = [[f64; 6]; N];
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) -> [f64; 6] {
+    fn with_simd<S: Simd>(self, _simd: S) -> [[f64; 6]; N] {
         let (kernel, stride) = (self.fourier.kernel(), self.fourier.stride());
         let row = self.theta as usize;
         // Rounding can make φ equal to one whole turn.
         let column = (self.phi as usize).min(self.fourier.steps() - 1);
-        let along_theta = kernel.derivatives::<S, PARTS>(self.theta - row as f64 - 0.5);
-        let along_phi = kernel.derivatives::<S, PARTS>(self.phi - column as f64 - 0.5);
-        let mut totals = [[0.0; HALF]; 6];
-        for first in [0, HALF] {
-            // Half a row at a time, so that its three sums stay in registers from the first row to the last.
-            let mut sums = [[0.0; HALF]; PARTS];
-            for tap in 0..TAPS {
-                let at = (row + tap) * stride + column + first;
-                let values = &self.grid[at..at + HALF];
-                for (part, sum) in sums.iter_mut().enumerate() {
-                    for k in 0..HALF {
-                        sum[k] = multiply_add::<S>(along_theta[part][tap], values[k], sum[k]);
-                    }
-                }
-            }
-            // The orders a + b below PARTS come first.
-            for (total, (a, b)) in totals.iter_mut().zip(ORDERS).take(PARTS * (PARTS + 1) / 2) {
+        let weights = [
+            kernel.derivatives::<S, PARTS>(self.theta - row as f64 - 0.5),
+            kernel.derivatives::<S, PARTS>(self.phi - column as f64 - 0.5),
+        ];
+        let mut out = [[0.0; 6]; N];
+        for (out, grid) in out.iter_mut().zip(self.grids) {
+            *out = window_sums::<S, PARTS>(&grid[row * stride + column..], stride, &weights);
+        }
+        out
+    }
+}
+
+/// The sums over one grid that begins at the first tap, weighted along θ and along φ.
+#[inline(always)]
+fn window_sums<S: Simd, const PARTS: usize>(
+    grid: &[f64],
+    stride: usize,
+    [along_theta, along_phi]: &[[Taps; PARTS]; 2],
+) -> [f64; 6] {
+    let mut totals = [[0.0; HALF]; 6];
+    for first in [0, HALF] {
+        // Half a row at a time, so that its three sums stay in registers from the first row to the last.
+        let mut sums = [[0.0; HALF]; PARTS];
+        for tap in 0..TAPS {
+            let at = tap * stride + first;
+            let values = &grid[at..at + HALF];
+            for (part, sum) in sums.iter_mut().enumerate() {
                 for k in 0..HALF {
-                    total[k] = multiply_add::<S>(sums[a][k], along_phi[b][first + k], total[k]);
+                    sum[k] = multiply_add::<S>(along_theta[part][tap], values[k], sum[k]);
                 }
             }
         }
-        totals.map(|lanes| lanes.iter().sum())
+        // The orders a + b below PARTS come first.
+        for (total, (a, b)) in totals.iter_mut().zip(ORDERS).take(PARTS * (PARTS + 1) / 2) {
+            for k in 0..HALF {
+                total[k] = multiply_add::<S>(sums[a][k], along_phi[b][first + k], total[k]);
+            }
+        }
     }
+    totals.map(|lanes| lanes.iter().sum())
 }
 
 /// Number of columns that are summed together.
@@ -353,6 +425,25 @@ mod tests {
         for p in places() {
             assert_eq!(field.value(&p), field.jet(&p).value);
         }
+    }
+
+    #[test]
+    fn several_functions_are_read_as_each_alone() {
+        let [a, b, c] = [0.0, 0.3, 0.6].map(|shift| {
+            let mut beta = rough(30);
+            beta.as_mut_slice()[5] += shift;
+            Field::new(&beta)
+        });
+        for p in places() {
+            let jets = Field::jets([&a, &b, &c], &p).unwrap();
+            assert_eq!(jets, [a.jet(&p), b.jet(&p), c.jet(&p)]);
+            let values = Field::values([&a, &b, &c], &p).unwrap();
+            assert_eq!(values, jets.map(|j| j.value));
+        }
+        let other = Field::new(&rough(31));
+        let mixed = Field::jets([&a, &other], &Vector3::z_axis());
+        assert!(matches!(mixed, Err(FieldError::Mismatch { index: 1, .. })));
+        assert_eq!(Field::values([], &Vector3::z_axis()), Err(FieldError::Empty));
     }
 
     #[test]
