@@ -40,7 +40,7 @@ fn hand_layer(criterion: &mut Criterion) {
     };
     let object = CollisionObject::new(&surface).expect("a grid");
     let mut rng = ChaCha8Rng::seed_from_u64(1);
-    let poses = params.sampling.sample(&surface, &hand, 100, &mut rng);
+    let poses = params.sampling.sample(&object, &hand, 100, &mut rng);
     let mut group = criterion.benchmark_group("hand");
     group.sample_size(10);
     group.bench_function("100_poses", |b| {

@@ -90,6 +90,11 @@ pub enum Rejection {
         /// The finger.
         finger: usize,
     },
+    /// A finger touches a part of the surface that closes a hole of the object.
+    OnClosedHole {
+        /// The finger.
+        finger: usize,
+    },
 }
 
 /// A hand whose fingers have closed.

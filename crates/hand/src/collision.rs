@@ -2,6 +2,7 @@
 
 mod extent;
 mod gap;
+mod line;
 mod object;
 mod piece;
 mod piece_frame;
@@ -9,6 +10,7 @@ mod self_distance;
 mod tree;
 
 pub use gap::Gap;
+pub(crate) use line::Crossing;
 pub use object::{CollisionObject, ObjectError, Precision};
 pub use piece::GeometryError;
 pub(crate) use piece::{ConvexPiece, LinkShape, check_hull};

@@ -1,7 +1,7 @@
 //! The point of the smooth surface that is closest to a finger tip.
 
-use nalgebra::{Isometry3, Matrix2, Point3, Vector2, Vector3};
-use shape::{RadialShape, Surface};
+use nalgebra::{Isometry3, Matrix2, Matrix3x2, Point3, Vector2, Vector3};
+use shape::{Surface, SurfaceRef};
 use sph::Direction;
 use sph::direction::tangent_frame;
 
@@ -15,7 +15,8 @@ const ANGLE_TOLERANCE: f64 = 1e-6;
 /// Where a tip meets the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TipContact {
-    /// Direction of the closest point from the object's origin.
+    /// The place of the closest point on the sphere; for a radial surface its direction from the
+    /// object's origin.
     pub direction: Direction,
     /// The closest point of the surface, object frame, metres.
     pub position: Point3<f64>,
@@ -65,15 +66,15 @@ fn closest(
     let start = links
         .iter()
         .map(|&link| object.link_gap(&hand.shapes[link], &object_from_links[link], precision))
-        .min_by(|a, b| a.upper.total_cmp(&b.upper))?
-        .on_object?;
+        .min_by(|a, b| a.upper.total_cmp(&b.upper))?;
+    let start = object.direction_at(&start)?;
     let tip = Tip {
         links: links
             .iter()
             .map(|&link| (&hand.shapes[link], object_from_links[link]))
             .collect(),
     };
-    let chart = Chart::new(object.surface(), Direction::try_new(start.coords, 0.0)?);
+    let chart = Chart::new(object, start);
     let at = descend(&chart, &tip)?;
     let direction = chart.direction(&at);
     let (position, inward_normal) = object.surface().contact(&direction);
@@ -116,17 +117,30 @@ impl Tip<'_> {
 
 /// Directions near a start by two coordinates of the tangent plane there.
 struct Chart<'a> {
-    surface: &'a RadialShape,
+    surface: SurfaceRef<'a>,
     start: Direction,
     axes: (Vector3<f64>, Vector3<f64>),
+    /// How far the surface reaches, metres; near the start it moves about so far per coordinate.
+    radius: f64,
 }
 
 impl<'a> Chart<'a> {
-    fn new(surface: &'a RadialShape, start: Direction) -> Self {
+    fn new(object: &CollisionObject<'a>, start: Direction) -> Self {
+        let radius = object.outer_radius();
+        let surface = object.surface();
+        let plain = tangent_frame(&start);
+        let axes = match surface {
+            SurfaceRef::Radial(_) => plain,
+            SurfaceRef::Spherical(field) => {
+                let slope = field.differential(&start).position_slope;
+                even_axes(&(slope * plain.0), &(slope * plain.1), plain, radius)
+            }
+        };
         Chart {
             surface,
             start,
-            axes: tangent_frame(&start),
+            axes,
+            radius,
         }
     }
 
@@ -142,18 +156,44 @@ impl<'a> Chart<'a> {
     /// between the connecting line and the normal.
     fn distance(&self, tip: &Tip<'_>, u: &Vector2<f64>) -> Option<(f64, Vector2<f64>, f64)> {
         let (p, length) = Direction::new_and_get(self.raw(u));
-        let (radius, slope) = self.surface.radius_and_gradient(&p);
-        let point = Point3::from(p.into_inner() * radius);
+        let turned = |axis: &Vector3<f64>| (axis - p.into_inner() * p.dot(axis)) / length;
+        let turns = (turned(&self.axes.0), turned(&self.axes.1));
+        let (point, (a, b)) = match self.surface {
+            SurfaceRef::Radial(shape) => {
+                let (radius, slope) = shape.radius_and_gradient(&p);
+                let moved = |turn: &Vector3<f64>| turn * radius + p.into_inner() * slope.dot(turn);
+                let point = Point3::from(p.into_inner() * radius);
+                (point, (moved(&turns.0), moved(&turns.1)))
+            }
+            SurfaceRef::Spherical(field) => {
+                let at = field.differential(&p);
+                let slope = at.position_slope;
+                (at.position, (slope * turns.0, slope * turns.1))
+            }
+        };
         let (on_tip, distance) = tip.closest(&point)?;
         let line = (point - on_tip) / distance;
-        let partial = |axis: &Vector3<f64>| {
-            let turn = (axis - p.into_inner() * p.dot(axis)) / length;
-            turn * radius + p.into_inner() * slope.dot(&turn)
-        };
-        let (a, b) = (partial(&self.axes.0), partial(&self.axes.1));
         let normal = a.cross(&b).normalize();
         let sine = line.cross(&normal).norm();
         Some((distance, Vector2::new(line.dot(&a), line.dot(&b)), sine))
+    }
+}
+
+/// Combinations of the axes along which a surface moves at right angles, by `length` per unit; `a` and
+/// `b` are its moves along the axes. The axes themselves where it hardly moves along one.
+pub(crate) fn even_axes(
+    a: &Vector3<f64>,
+    b: &Vector3<f64>,
+    axes: (Vector3<f64>, Vector3<f64>),
+    length: f64,
+) -> (Vector3<f64>, Vector3<f64>) {
+    let (_, r) = Matrix3x2::from_columns(&[*a, *b]).qr().unpack();
+    match r.try_inverse() {
+        Some(inverse) if inverse.iter().all(|x| x.is_finite()) => {
+            let mix = |k: usize| (axes.0 * inverse[(0, k)] + axes.1 * inverse[(1, k)]) * length;
+            (mix(0), mix(1))
+        }
+        _ => axes,
     }
 }
 
@@ -161,7 +201,7 @@ impl<'a> Chart<'a> {
 fn descend(chart: &Chart<'_>, tip: &Tip<'_>) -> Option<Vector2<f64>> {
     let mut at = Vector2::zeros();
     let (mut value, mut gradient, mut sine) = chart.distance(tip, &at)?;
-    let radius = chart.surface.radius_bounds().1;
+    let radius = chart.radius;
     let mut inverse_hessian = Matrix2::identity() * (1.0 / radius);
     for _ in 0..MAX_STEPS {
         if sine <= ANGLE_TOLERANCE {

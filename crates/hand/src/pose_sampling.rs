@@ -3,13 +3,15 @@
 
 mod antipodal;
 mod obstacles;
+mod places;
 
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, UnitVector3, Vector3};
 use rand::{Rng, RngExt};
-use shape::RadialShape;
 
+use crate::collision::CollisionObject;
 use crate::hand::Hand;
 use antipodal::Pairs;
+use places::Target;
 use shape::Support;
 
 /// Draws of one pose beyond the first.
@@ -59,6 +61,10 @@ impl PoseSampling {
     /// Draws `count` poses: the hand is aimed at the origin from a uniform direction, at a
     /// uniform stand-off and roll, in a uniformly chosen pre-shape.
     ///
+    /// An object that is not star-shaped has thin and bent parts away from its origin. Every second hand
+    /// is aimed at a point half-way through such a part instead, below a place drawn by area, and the
+    /// stand-off is measured from one of the places where the line of approach leaves the surface.
+    ///
     /// With [`Self::antipodal`] the jaws of the pre-shape are set about a pair of points on the surface
     /// instead: the first in a uniform direction, the line between them uniform in the friction cone of
     /// the first and within that of the second, their distance less than the opening; the approach is
@@ -69,7 +75,7 @@ impl PoseSampling {
     /// The same generator state gives the same poses.
     pub fn sample<R: Rng + ?Sized>(
         &self,
-        surface: &RadialShape,
+        object: &CollisionObject<'_>,
         hand: &Hand,
         count: usize,
         rng: &mut R,
@@ -77,9 +83,10 @@ impl PoseSampling {
         if self.preshapes.is_empty() {
             return Vec::new();
         }
+        let target = Target::of(object);
         let pairs = self
             .antipodal
-            .map(|cone| Pairs::new(surface, hand, self, cone));
+            .map(|cone| Pairs::new(object, &target, hand, self, cone));
         let found = |rng: &mut R| {
             let (which, pose) = pairs.as_ref()?.draw(hand, rng)?;
             Some(HandPose {
@@ -88,23 +95,23 @@ impl PoseSampling {
             })
         };
         (0..count)
-            .map(|_| found(rng).unwrap_or_else(|| self.draw_above(surface, hand, rng)))
+            .map(|_| found(rng).unwrap_or_else(|| self.draw_above(&target, hand, rng)))
             .collect()
     }
 
     /// A pose of the open hand above the support, if one is found.
     fn draw_above<R: Rng + ?Sized>(
         &self,
-        surface: &RadialShape,
+        target: &Target<'_>,
         hand: &Hand,
         rng: &mut R,
     ) -> HandPose {
-        let mut pose = self.draw(surface, hand, rng);
+        let mut pose = self.draw(target, hand, rng);
         for _ in 0..REDRAWS {
             if self.is_above(hand, &pose) {
                 break;
             }
-            pose = self.draw(surface, hand, rng);
+            pose = self.draw(target, hand, rng);
         }
         pose
     }
@@ -122,7 +129,7 @@ impl PoseSampling {
             .is_none_or(|(_, height)| height >= *clearance)
     }
 
-    fn draw<R: Rng + ?Sized>(&self, surface: &RadialShape, hand: &Hand, rng: &mut R) -> HandPose {
+    fn draw<R: Rng + ?Sized>(&self, target: &Target<'_>, hand: &Hand, rng: &mut R) -> HandPose {
         let z: f64 = rng.random_range(self.least_height.clamp(-1.0, 1.0)..=1.0);
         let azimuth = rng.random_range(0.0..std::f64::consts::TAU);
         let roll = rng.random_range(0.0..std::f64::consts::TAU);
@@ -135,9 +142,11 @@ impl PoseSampling {
             Some((support, _)) => upright(&support.normal) * from,
             None => from,
         };
-        let distance = surface.radius(&from) + standoff;
+        let (aim, outside) = target.aim(&from, rng);
+        let mut pose = aimed(hand, &from, outside + standoff, roll);
+        pose.translation.vector += aim.coords;
         HandPose {
-            object_from_palm: aimed(hand, &from, distance, roll),
+            object_from_palm: pose,
             preshape,
         }
     }

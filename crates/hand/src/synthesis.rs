@@ -6,7 +6,7 @@ use grasp::{Contact, Convention, GraspModel, QualityError, Workspace, epsilon};
 use nalgebra::{Isometry3, Point3};
 use rand::Rng;
 use rayon::prelude::*;
-use shape::RadialShape;
+use shape::SurfaceRef;
 use sph::Direction;
 use thiserror::Error;
 
@@ -129,7 +129,7 @@ impl OutcomeCounts {
 
 impl Rejection {
     /// All reasons, in the order in which a pose meets them.
-    pub const REASONS: [&'static str; 7] = [
+    pub const REASONS: [&'static str; 8] = [
         "below_support",
         "base_near_object",
         "starts_in_object",
@@ -137,6 +137,7 @@ impl Rejection {
         "tip_did_not_arrive",
         "parts_near_each_other",
         "no_contact",
+        "on_closed_hole",
     ];
 
     /// The kind of reason, without link or finger.
@@ -149,6 +150,7 @@ impl Rejection {
             Rejection::TipDidNotArrive { .. } => Self::REASONS[4],
             Rejection::PartsNear { .. } => Self::REASONS[5],
             Rejection::NoContact { .. } => Self::REASONS[6],
+            Rejection::OnClosedHole { .. } => Self::REASONS[7],
         }
     }
 
@@ -178,6 +180,9 @@ impl Rejection {
             Rejection::NoContact { finger: f } => {
                 format!("finger '{}' has no contact within the gap", finger(f))
             }
+            Rejection::OnClosedHole { finger: f } => {
+                format!("finger '{}' touches where a hole was closed", finger(f))
+            }
         }
     }
 }
@@ -189,8 +194,8 @@ impl Rejection {
 ///
 /// # Errors
 /// The surface is too rough for the collision model, or the convention cannot be used.
-pub fn synthesize<R: Rng + ?Sized>(
-    surface: &RadialShape,
+pub fn synthesize<'a, R: Rng + ?Sized>(
+    surface: impl Into<SurfaceRef<'a>>,
     hand: &Hand,
     params: &SynthesisParams,
     rng: &mut R,
@@ -202,15 +207,15 @@ pub fn synthesize<R: Rng + ?Sized>(
 ///
 /// # Errors
 /// As [`synthesize`].
-pub fn synthesize_watched<R: Rng + ?Sized>(
-    surface: &RadialShape,
+pub fn synthesize_watched<'a, R: Rng + ?Sized>(
+    surface: impl Into<SurfaceRef<'a>>,
     hand: &Hand,
     params: &SynthesisParams,
     rng: &mut R,
     pose_done: &(dyn Fn() + Sync),
 ) -> Result<Synthesis, SynthesisError> {
     let object = CollisionObject::new(surface)?;
-    let poses = params.sampling.sample(surface, hand, params.poses, rng);
+    let poses = params.sampling.sample(&object, hand, params.poses, rng);
     let outcomes = poses
         .par_iter()
         .map(|pose| {
@@ -265,14 +270,18 @@ fn close_and_touch(
         links: Vec::with_capacity(hand.fingers().len()),
         quality: 0.0,
     };
-    let mut touch = |contact: TipContact, links: &[usize]| {
+    let mut touch = |contact: TipContact, finger: usize, link: usize| {
+        if object.is_closed_hole(&contact.position) {
+            return Err(Rejection::OnClosedHole { finger });
+        }
         grasp.contacts.push(Contact {
             position: contact.position,
             inward_normal: contact.inward_normal,
         });
         grasp.directions.push(contact.direction);
         grasp.gaps.push(contact.gap);
-        grasp.links.push(links[0]);
+        grasp.links.push(link);
+        Ok(())
     };
     let poses = &closed.object_from_links;
     for (finger, of_finger) in hand.fingers().iter().enumerate() {
@@ -286,7 +295,7 @@ fn close_and_touch(
             let contact = tip_contact(object, hand, of_finger, poses)
                 .filter(near)
                 .ok_or(Rejection::NoContact { finger })?;
-            touch(contact, &of_finger.tip_links);
+            touch(contact, finger, of_finger.tip_links[0])?;
             continue;
         }
         let moved = |l: &&usize| of_finger.moving_links.contains(l);
@@ -294,7 +303,7 @@ fn close_and_touch(
             let contact = link_contact(object, hand, link, poses)
                 .filter(near)
                 .ok_or(Rejection::NoContact { finger })?;
-            touch(contact, &[link]);
+            touch(contact, finger, link)?;
         }
     }
     Ok(grasp)

@@ -26,6 +26,8 @@
 
 pub mod acceptance;
 pub mod algebra;
+mod any;
+pub mod closed_patch;
 mod crossing;
 pub mod embedding;
 mod evidence;
@@ -49,6 +51,7 @@ pub mod scene;
 mod sphere_partition;
 mod spherical;
 mod spherical_cloud;
+mod spherical_field;
 mod spherical_fit;
 mod spherical_rows;
 pub mod surface;
@@ -58,6 +61,8 @@ pub mod visibility;
 mod voxel_grid;
 
 pub use acceptance::{Acceptance, Verdict};
+pub use any::{AnyField, AnyShape, SurfaceRef};
+pub use closed_patch::ClosedPatch;
 pub use evidence::{Evidence, PAD_RADIUS, evidence};
 pub use fit::{Fit, FitError, FitSettings};
 pub use immersion::{Immersion, SphericalError};
@@ -71,6 +76,7 @@ pub use spherical::SphericalShape;
 pub use spherical_cloud::{
     SphericalCloudError, SphericalCloudFit, SphericalSettings, fit_spherical_cloud,
 };
+pub use spherical_field::SphericalField;
 pub use spherical_fit::{SphericalFit, SphericalFitError, fit_spherical};
 pub use surface::{Differential, Surface};
 pub use triangle_mesh::TriangleMesh;

@@ -1,9 +1,12 @@
 //! Members of M^sph: surfaces whose three coordinates are functions on the sphere.
 
+use std::sync::Arc;
+
 use nalgebra::{Matrix3, Point3, UnitVector3, Vector3};
 use sph::grid::{GridValues, RingGrid};
 use sph::{Basis, Coefficients, Direction, Jet};
 
+use crate::closed_patch::ClosedPatch;
 use crate::immersion::{self, Immersion, SphericalError};
 use crate::injectivity::{self, Embedding};
 use crate::mass::{self, MassProperties};
@@ -22,6 +25,7 @@ pub struct SphericalShape {
     basis: Basis,
     immersion: Immersion,
     mass: MassProperties,
+    closed: Arc<[ClosedPatch]>,
 }
 
 impl SphericalShape {
@@ -40,12 +44,31 @@ impl SphericalShape {
                 coordinates,
                 immersion,
                 mass,
+                closed: Arc::default(),
             })
         } else {
             Err(SphericalError::InsideOut {
                 volume: mass.volume,
             })
         }
+    }
+
+    /// The same surface, of which these parts close holes of the object; centred frame.
+    #[must_use]
+    pub fn with_closed_patches(self, patches: Vec<ClosedPatch>) -> Self {
+        Self {
+            closed: patches.into(),
+            ..self
+        }
+    }
+
+    /// Where the surface closes a hole of the object, centred frame.
+    pub fn closed_patches(&self) -> &[ClosedPatch] {
+        &self.closed
+    }
+
+    pub(crate) fn shared_closed_patches(&self) -> Arc<[ClosedPatch]> {
+        Arc::clone(&self.closed)
     }
 
     /// The same surface as a member of M^sph: f = r p, of one degree more.
@@ -101,14 +124,7 @@ impl SphericalShape {
 
     /// The regular (θ,φ) mesh, as [`RadialShape::mesh`].
     pub fn mesh(&self, rows: usize, columns: usize) -> TriangleMesh {
-        let grid = RingGrid::equiangular(rows, columns);
-        let [x, y, z] = self
-            .coordinates
-            .each_ref()
-            .map(|c| grid.synthesis(c).values);
-        let points = x.iter().zip(&y).zip(&z);
-        let points = points.map(|((x, y), z)| Point3::new(*x, *y, *z)).collect();
-        TriangleMesh::from_ring_points(rows, columns, points)
+        mesh_of(&self.coordinates, rows, columns)
     }
 
     fn jets(&self, p: &Direction) -> [Jet; 3] {
@@ -116,6 +132,19 @@ impl SphericalShape {
         let coordinates = self.coordinates.each_ref();
         coordinates.map(|c| self.basis.jet(c, p, &mut work))
     }
+}
+
+/// The regular (θ,φ) mesh of a map.
+pub(crate) fn mesh_of(
+    coordinates: &[Coefficients; 3],
+    rows: usize,
+    columns: usize,
+) -> TriangleMesh {
+    let grid = RingGrid::equiangular(rows, columns);
+    let [x, y, z] = coordinates.each_ref().map(|c| grid.synthesis(c).values);
+    let points = x.iter().zip(&y).zip(&z);
+    let points = points.map(|((x, y), z)| Point3::new(*x, *y, *z)).collect();
+    TriangleMesh::from_ring_points(rows, columns, points)
 }
 
 /// Rows of df at p from the three jets.
@@ -135,6 +164,36 @@ fn inward_normal(
     UnitVector3::new_and_get((slope * v).cross(&(slope * u)))
 }
 
+/// Position and inward normal from the three jets.
+pub(crate) fn contact_of(p: &Direction, jets: &[Jet; 3]) -> (Point3<f64>, UnitVector3<f64>) {
+    let frame = sph::direction::tangent_frame(p);
+    (position(jets), inward_normal(&slope(jets), &frame).0)
+}
+
+/// The whole differential from the three jets.
+pub(crate) fn differential_of(p: &Direction, jets: &[Jet; 3]) -> Differential {
+    let slope = slope(jets);
+    let frame = sph::direction::tangent_frame(p);
+    let (normal, length) = inward_normal(&slope, &frame);
+    // The frame (u, v) is carried along without turning, so that along w the derivative of
+    // f_u is Hess f (w, u), coordinate by coordinate.
+    let bend = |w: &Vector3<f64>, u: &Vector3<f64>| {
+        Vector3::from(jets.each_ref().map(|j| w.dot(&(j.hessian * u))))
+    };
+    let (u, v) = frame;
+    let (fu, fv) = (slope * u, slope * v);
+    let turn = |w: &Vector3<f64>| bend(w, &v).cross(&fu) + fv.cross(&bend(w, &u));
+    let raw = turn(&u) * u.transpose() + turn(&v) * v.transpose();
+    let unit = normal.into_inner();
+    let across = Matrix3::identity() - unit * unit.transpose();
+    Differential {
+        position: position(jets),
+        inward_normal: normal,
+        position_slope: slope,
+        normal_slope: across * raw / length,
+    }
+}
+
 impl Surface for SphericalShape {
     fn point(&self, p: &Direction) -> Point3<f64> {
         let mut work = self.basis.workspace();
@@ -144,33 +203,11 @@ impl Surface for SphericalShape {
     }
 
     fn contact(&self, p: &Direction) -> (Point3<f64>, UnitVector3<f64>) {
-        let jets = self.jets(p);
-        let frame = sph::direction::tangent_frame(p);
-        (position(&jets), inward_normal(&slope(&jets), &frame).0)
+        contact_of(p, &self.jets(p))
     }
 
     fn differential(&self, p: &Direction) -> Differential {
-        let jets = self.jets(p);
-        let slope = slope(&jets);
-        let frame = sph::direction::tangent_frame(p);
-        let (normal, length) = inward_normal(&slope, &frame);
-        // The frame (u, v) is carried along without turning, so that along w the derivative of
-        // f_u is Hess f (w, u), coordinate by coordinate.
-        let bend = |w: &Vector3<f64>, u: &Vector3<f64>| {
-            Vector3::from(jets.each_ref().map(|j| w.dot(&(j.hessian * u))))
-        };
-        let (u, v) = frame;
-        let (fu, fv) = (slope * u, slope * v);
-        let turn = |w: &Vector3<f64>| bend(w, &v).cross(&fu) + fv.cross(&bend(w, &u));
-        let raw = turn(&u) * u.transpose() + turn(&v) * v.transpose();
-        let unit = normal.into_inner();
-        let across = Matrix3::identity() - unit * unit.transpose();
-        Differential {
-            position: position(&jets),
-            inward_normal: normal,
-            position_slope: slope,
-            normal_slope: across * raw / length,
-        }
+        differential_of(p, &self.jets(p))
     }
 
     fn centre_of_mass(&self) -> Point3<f64> {

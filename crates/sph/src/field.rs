@@ -160,7 +160,10 @@ impl Field {
     ///
     /// # Errors
     /// There are no fields, or they differ in degree.
-    pub fn jets<const N: usize>(fields: [&Field; N], p: &Direction) -> Result<[Jet; N], FieldError> {
+    pub fn jets<const N: usize>(
+        fields: [&Field; N],
+        p: &Direction,
+    ) -> Result<[Jet; N], FieldError> {
         let (first, place) = (shared_grid(&fields)?, Place::new(p));
         let parts = read::<3, N>(&fields, first, &place);
         let mut jets = parts.map(|d| place.jet(&d, first.steps_a_radian()));
@@ -443,7 +446,10 @@ mod tests {
         let other = Field::new(&rough(31));
         let mixed = Field::jets([&a, &other], &Vector3::z_axis());
         assert!(matches!(mixed, Err(FieldError::Mismatch { index: 1, .. })));
-        assert_eq!(Field::values([], &Vector3::z_axis()), Err(FieldError::Empty));
+        assert_eq!(
+            Field::values([], &Vector3::z_axis()),
+            Err(FieldError::Empty)
+        );
     }
 
     #[test]

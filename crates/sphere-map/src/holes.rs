@@ -18,6 +18,10 @@ pub struct ClosedHole {
     pub area: f64,
     /// Largest distance of the membrane from its middle.
     pub radius: f64,
+    /// Vertices of the lattice in the membrane.
+    pub places: Vec<Point3<f64>>,
+    /// How far the surface of the slab is from the nearest of the places, at most and about.
+    pub reach: f64,
 }
 
 /// Vertices that are inside but far from all points, although the outside touches them.
@@ -70,13 +74,15 @@ impl Membranes {
     }
 
     /// The holes, with areas from the triangles of the mesh that are farther than `probe` from all
-    /// points and nearest to the membrane, both sides, halved.
+    /// points and nearest to the membrane, both sides, halved; `slab` is half the thickness that
+    /// membranes are given.
     pub(crate) fn holes(
         &self,
         lattice: &Lattice,
         mesh: &Mesh,
         distances: &[f32],
         probe: f64,
+        slab: f64,
     ) -> Vec<ClosedHole> {
         let places: Vec<Vec<Point3<f64>>> = (0..self.count)
             .map(|k| {
@@ -103,7 +109,7 @@ impl Membranes {
             }
         }
         let mut holes: Vec<ClosedHole> = places
-            .iter()
+            .into_iter()
             .zip(areas)
             .map(|(places, area)| {
                 let sum: nalgebra::Vector3<f64> = places.iter().map(|p| p.coords).sum();
@@ -113,6 +119,8 @@ impl Membranes {
                     centre,
                     area,
                     radius: radii.fold(0.0, f64::max),
+                    places,
+                    reach: slab + lattice.step,
                 }
             })
             .filter(|hole| hole.radius >= LEAST_RADIUS * lattice.step)

@@ -137,7 +137,7 @@ pub fn wrap(points: &[Point3<f64>], settings: &WrapSettings) -> Result<Wrap, Wra
     carving.flip(false, |at| -field[at]);
 
     let fine = march(&lattice, &carving.inside, &field);
-    let closed_holes = membranes.holes(&lattice, &fine, &distances, probe);
+    let closed_holes = membranes.holes(&lattice, &fine, &distances, probe, slab);
     let broken = || WrapError::Topology {
         euler: fine.euler_characteristic(),
     };

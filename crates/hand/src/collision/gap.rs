@@ -11,18 +11,25 @@ pub struct Gap {
     pub upper: f64,
     /// A point of the mesh at distance `upper`, in the centred frame, where there is one.
     pub on_object: Option<Point3<f64>>,
+    /// A vertex of the grid next to that point: its row and column.
+    pub(crate) near: Option<Vertex>,
 }
+
+/// Row and column of a vertex of the grid.
+pub(crate) type Vertex = (u32, u32);
 
 impl Gap {
     pub(super) const TOUCHING: Gap = Gap {
         lower: 0.0,
         upper: 0.0,
         on_object: None,
+        near: None,
     };
     pub(super) const FAR: Gap = Gap {
         lower: f64::INFINITY,
         upper: f64::INFINITY,
         on_object: None,
+        near: None,
     };
 
     /// The bounds on the smaller of two distances.

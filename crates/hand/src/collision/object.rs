@@ -1,7 +1,8 @@
-//! The object as the hand meets it: distances from convex pieces to a radial surface.
+//! The object as the hand meets it: distances from convex pieces to a surface.
 
 use nalgebra::{Isometry3, Point3};
-use shape::{RadialShape, TriangleMesh};
+use shape::closed_patch::patch_at;
+use shape::{SurfaceRef, TriangleMesh};
 use sph::Direction;
 use thiserror::Error;
 
@@ -38,15 +39,16 @@ pub enum ObjectError {
     },
 }
 
-/// A radial surface prepared for distance queries.
+/// A surface prepared for distance queries.
 ///
 /// Distances are those to the surface's regular (θ,φ) mesh, found by branch and bound
 /// over a hierarchy of patches (bounds in closed form, parry at the few triangles left).
 #[derive(Debug, Clone)]
 pub struct CollisionObject<'a> {
-    surface: &'a RadialShape,
-    tree: Tree,
-    outer_radius: f64,
+    surface: SurfaceRef<'a>,
+    pub(super) tree: Tree,
+    pub(super) outer_radius: f64,
+    inner_radius: f64,
     mesh_error: f64,
 }
 
@@ -73,7 +75,8 @@ impl<'a> CollisionObject<'a> {
     /// Prepares a surface on the coarsest of three grids whose facets stay within
     /// [`Self::FACET_TOLERANCE`] of it ([`Self::mesh_error`] says how near they are); beyond
     /// [`Self::FACET_LIMIT`] on the finest it is an error.
-    pub fn new(surface: &'a RadialShape) -> Result<Self, ObjectError> {
+    pub fn new(surface: impl Into<SurfaceRef<'a>>) -> Result<Self, ObjectError> {
+        let surface = surface.into();
         let (mut rows, mut columns) = Self::COARSE_GRID;
         let mut mesh = surface.mesh(rows, columns);
         for _ in 0..2 {
@@ -96,10 +99,11 @@ impl<'a> CollisionObject<'a> {
 
     /// Prepares a surface on a grid of `rows` circles of latitude with `columns` points each.
     pub fn with_grid(
-        surface: &'a RadialShape,
+        surface: impl Into<SurfaceRef<'a>>,
         rows: usize,
         columns: usize,
     ) -> Result<Self, ObjectError> {
+        let surface = surface.into();
         if !(8..=4096).contains(&rows) || !(8..=4096).contains(&columns) {
             return Err(ObjectError::Grid { rows, columns });
         }
@@ -110,18 +114,44 @@ impl<'a> CollisionObject<'a> {
         ))
     }
 
-    fn of_mesh(surface: &'a RadialShape, mesh: &TriangleMesh, columns: usize) -> Self {
+    fn of_mesh(surface: SurfaceRef<'a>, mesh: &TriangleMesh, columns: usize) -> Self {
+        let (inner_radius, outer_radius) = match surface {
+            SurfaceRef::Radial(shape) => shape.radius_bounds(),
+            SurfaceRef::Spherical(_) => {
+                let squared = mesh.vertices.iter().map(|v| v.coords.norm_squared());
+                let outer = squared.fold(0.0, f64::max).sqrt();
+                (3.0 * mesh.volume() / mesh.area(), outer)
+            }
+        };
+        let star_shaped = matches!(surface, SurfaceRef::Radial(_));
         CollisionObject {
             surface,
-            tree: Tree::new(&mesh.vertices, columns),
-            outer_radius: surface.radius_bounds().1,
+            tree: Tree::new(&mesh.vertices, columns, star_shaped),
+            outer_radius,
+            inner_radius,
             mesh_error: facet_error(mesh, columns),
         }
     }
 
     /// The surface.
-    pub fn surface(&self) -> &'a RadialShape {
+    pub fn surface(&self) -> SurfaceRef<'a> {
         self.surface
+    }
+
+    /// How far the surface reaches from the origin, metres.
+    pub fn outer_radius(&self) -> f64 {
+        self.outer_radius
+    }
+
+    /// Radius of a ball that is about as thick as the object, metres: the least radius of a radial
+    /// surface, else three times volume over area.
+    pub(crate) fn inner_radius(&self) -> f64 {
+        self.inner_radius
+    }
+
+    /// Whether a point of the surface is on a part that closes a hole of the object.
+    pub fn is_closed_hole(&self, p: &Point3<f64>) -> bool {
+        patch_at(self.surface.closed_patches(), p).is_some()
     }
 
     /// Circles of latitude, poles included, and points on each of the mesh.
@@ -135,15 +165,12 @@ impl<'a> CollisionObject<'a> {
         self.mesh_error
     }
 
-    /// Whether a point (object frame, metres) is inside the smooth surface.
-    pub fn contains(&self, p: &Point3<f64>) -> bool {
-        let distance = p.coords.norm();
-        if distance > self.outer_radius {
-            return false;
-        }
-        match Direction::try_new(p.coords, 0.0) {
-            Some(direction) => distance < self.surface.radius(&direction),
-            None => true,
+    /// The place on the sphere at which a distance was found: exact for a radial surface, the next vertex
+    /// of the grid otherwise.
+    pub(crate) fn direction_at(&self, gap: &Gap) -> Option<Direction> {
+        match self.surface {
+            SurfaceRef::Radial(_) => Direction::try_new(gap.on_object?.coords, 0.0),
+            SurfaceRef::Spherical(_) => Some(self.tree.direction(gap.near?)),
         }
     }
 
@@ -209,12 +236,12 @@ impl<'a> CollisionObject<'a> {
             }
             match self.tree.nodes[index].content {
                 Content::Leaf(block) => {
-                    for triangle in self.tree.triangles(block) {
+                    for (triangle, near) in self.tree.triangles(block) {
                         let least = frame.triangle_bound(&triangle);
                         if least >= precision.settled(gap.upper) {
                             gap.lower = gap.lower.min(least);
                         } else {
-                            gap = gap.min(frame.triangle_gap(&triangle));
+                            gap = gap.min(frame.triangle_gap(&triangle, near));
                         }
                     }
                 }
@@ -273,6 +300,7 @@ mod tests {
     use crate::model::{Geometry, LinkGeometry};
     use nalgebra::Vector3;
     use parry3d_f64::shape::TriMesh;
+    use shape::RadialShape;
     use sph::Coefficients;
 
     const EXACT: Precision = Precision {

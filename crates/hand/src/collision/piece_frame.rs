@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 
-use super::gap::Gap;
+use super::gap::{Gap, Vertex};
 use super::piece::ConvexPiece;
 use super::tree::Node;
 
@@ -57,6 +57,7 @@ impl<'a> PieceFrame<'a> {
             if high < gap.upper {
                 gap.upper = high.max(0.0);
                 gap.on_object = Some(Point3::from(nodes[index].centre));
+                gap.near = Some(nodes[index].vertex);
             }
             (low, index)
         };
@@ -73,13 +74,15 @@ impl<'a> PieceFrame<'a> {
         at.lower + local.iter().map(fall).fold(f64::INFINITY, f64::min)
     }
 
-    pub(super) fn triangle_gap(&self, corners: &[Vector3<f64>; 3]) -> Gap {
+    /// The distance of a triangle next to a vertex of the grid.
+    pub(super) fn triangle_gap(&self, corners: &[Vector3<f64>; 3], near: Vertex) -> Gap {
         let local = corners.each_ref().map(|c| self.local(c));
         let (distance, on_triangle) = self.piece.triangle_distance(&local);
         Gap {
             lower: distance,
             upper: distance,
             on_object: on_triangle.map(|p| self.object_from_piece * Point3::from(p)),
+            near: Some(near),
         }
     }
 }

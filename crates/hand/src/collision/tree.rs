@@ -9,7 +9,9 @@
 //! patches survive.
 
 use nalgebra::{Point3, Vector3};
+use sph::{Direction, SphericalCoords};
 
+use super::gap::Vertex;
 use super::piece::direction_or_z;
 
 /// Cells in a leaf.
@@ -35,6 +37,8 @@ pub(super) struct Block {
 #[derive(Debug, Clone)]
 pub(super) struct Node {
     pub(super) centre: Vector3<f64>,
+    /// Row and column of the centre.
+    pub(super) vertex: Vertex,
     pub(super) radius: f64,
     pub(super) normal: Vector3<f64>,
     pub(super) above: f64,
@@ -48,15 +52,18 @@ pub(super) struct Tree {
     pub(super) nodes: Vec<Node>,
     vertices: Vec<Vector3<f64>>,
     columns: usize,
+    /// Whether every vertex lies in its own direction from the origin.
+    star_shaped: bool,
 }
 
 impl Tree {
     /// Builds the hierarchy over a grid from pole to pole. O(n log n).
-    pub(super) fn new(vertices: &[Point3<f64>], columns: usize) -> Self {
+    pub(super) fn new(vertices: &[Point3<f64>], columns: usize, star_shaped: bool) -> Self {
         let mut tree = Tree {
             nodes: Vec::with_capacity(vertices.len() + 1),
             vertices: vertices.iter().map(|v| v.coords).collect(),
             columns,
+            star_shaped,
         };
         let rows = vertices.len() / columns;
         tree.build(Block {
@@ -71,20 +78,32 @@ impl Tree {
         (self.vertices.len() / self.columns, self.columns)
     }
 
+    /// The direction of a vertex of the grid.
+    pub(super) fn direction(&self, (row, column): Vertex) -> Direction {
+        let theta = std::f64::consts::PI * f64::from(row) / (self.grid().0 - 1) as f64;
+        let phi = std::f64::consts::TAU * f64::from(column) / self.columns as f64;
+        SphericalCoords { theta, phi }.direction()
+    }
+
     fn at(&self, row: usize, column: usize) -> Vector3<f64> {
         self.vertices[row * self.columns + column % self.columns]
     }
 
-    /// The two triangles of every cell of a block; those at the poles may be degenerate.
-    pub(super) fn triangles(&self, block: Block) -> impl Iterator<Item = [Vector3<f64>; 3]> + '_ {
+    /// The two triangles of every cell of a block, each with its first corner's row and column; those
+    /// at the poles may be degenerate.
+    pub(super) fn triangles(
+        &self,
+        block: Block,
+    ) -> impl Iterator<Item = ([Vector3<f64>; 3], Vertex)> + '_ {
         let cells = (block.rows.0..block.rows.1)
             .flat_map(move |r| (block.columns.0..block.columns.1).map(move |c| (r, c)));
         cells.flat_map(|(r, c)| {
             let corner = self.at(r, c);
             let across = self.at(r + 1, c + 1);
+            let vertex = (r as u32, (c % self.columns) as u32);
             [
-                [corner, self.at(r + 1, c), across],
-                [corner, across, self.at(r, c + 1)],
+                ([corner, self.at(r + 1, c), across], vertex),
+                ([corner, across, self.at(r, c + 1)], vertex),
             ]
         })
     }
@@ -104,11 +123,12 @@ impl Tree {
 
     fn patch(&self, block: Block) -> Node {
         let ((r0, r1), (c0, c1)) = (block.rows, block.columns);
-        let centre = self.at((r0 + r1) / 2, (c0 + c1) / 2);
+        let (row, column) = ((r0 + r1) / 2, (c0 + c1) / 2);
+        let centre = self.at(row, column);
         let down = self.at(r1, c1) - self.at(r0, c0);
         let up = self.at(r0, c1) - self.at(r1, c0);
         let mut normal = direction_or_z(&down.cross(&up)).into_inner();
-        if normal.dot(&centre) < 0.0 {
+        if self.star_shaped && normal.dot(&centre) < 0.0 {
             normal = -normal;
         }
         let (mut radius, mut above, mut below): (f64, f64, f64) = (0.0, 0.0, 0.0);
@@ -123,6 +143,7 @@ impl Tree {
         }
         Node {
             centre,
+            vertex: (row as u32, (column % self.columns) as u32),
             radius: radius.sqrt(),
             normal,
             above,
@@ -137,11 +158,11 @@ impl Tree {
         if (r1 - r0) * (c1 - c0) <= LEAF_CELLS {
             return None;
         }
-        let middle = self.at((r0 + r1) / 2, (c0 + c1) / 2);
-        let rows = self.vertices.len() / self.columns;
-        let height = (r1 - r0) as f64 * std::f64::consts::PI / (rows - 1) as f64;
-        let ring = middle.xy().norm() / middle.norm();
-        let width = (c1 - c0) as f64 * ring * std::f64::consts::TAU / self.columns as f64;
+        let (height, width) = if self.star_shaped {
+            self.angles(block)
+        } else {
+            self.lengths(block)
+        };
         let part = |rows, columns| Block { rows, columns };
         Some(if c1 - c0 == 1 || (r1 - r0 > 1 && height >= width) {
             let cut = (r0 + r1) / 2;
@@ -150,5 +171,24 @@ impl Tree {
             let cut = (c0 + c1) / 2;
             (part((r0, r1), (c0, cut)), part((r0, r1), (cut, c1)))
         })
+    }
+    /// Extents of a block along its rows and columns as angles, about.
+    fn angles(&self, block: Block) -> (f64, f64) {
+        let ((r0, r1), (c0, c1)) = (block.rows, block.columns);
+        let middle = self.at((r0 + r1) / 2, (c0 + c1) / 2);
+        let rows = self.vertices.len() / self.columns;
+        let height = (r1 - r0) as f64 * std::f64::consts::PI / (rows - 1) as f64;
+        let ring = middle.xy().norm() / middle.norm();
+        let width = (c1 - c0) as f64 * ring * std::f64::consts::TAU / self.columns as f64;
+        (height, width)
+    }
+
+    /// Lengths of the lines through the middle of a block, metres.
+    fn lengths(&self, block: Block) -> (f64, f64) {
+        let ((r0, r1), (c0, c1)) = (block.rows, block.columns);
+        let (row, column) = ((r0 + r1) / 2, (c0 + c1) / 2);
+        let down = (r0..r1).map(|r| (self.at(r + 1, column) - self.at(r, column)).norm());
+        let along = (c0..c1).map(|c| (self.at(row, c + 1) - self.at(row, c)).norm());
+        (down.sum(), along.sum())
     }
 }

@@ -2,12 +2,14 @@
 
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, UnitQuaternion, UnitVector3, Vector3};
 use rand::{Rng, RngExt};
-use shape::{RadialField, RadialShape, Surface};
+use shape::{RadialField, Surface};
 use sph::Direction;
 use sph::direction::tangent_frame;
 
 use super::PoseSampling;
 use super::obstacles::Obstacles;
+use super::places::{Places, Target};
+use crate::collision::CollisionObject;
 use crate::hand::{Hand, Jaws};
 use shape::Support;
 
@@ -29,7 +31,7 @@ const BISECTIONS: usize = 20;
 
 /// A surface on which pairs are looked for.
 pub(super) struct Pairs<'a> {
-    field: RadialField,
+    body: Body<'a>,
     points: Vec<Point3<f64>>,
     /// On their way from each pre-shape that poses are drawn from, the widest first.
     jaws: Vec<Vec<Station<'a>>>,
@@ -37,6 +39,12 @@ pub(super) struct Pairs<'a> {
     least_height: f64,
     support: Option<(Support, f64)>,
     radius: f64,
+}
+
+/// A surface as lines through it meet it.
+enum Body<'a> {
+    Radial(Box<RadialField>),
+    Spherical(&'a Places<'a>),
 }
 
 /// The jaws somewhere on their way.
@@ -49,17 +57,28 @@ struct Station<'a> {
 
 impl<'a> Pairs<'a> {
     pub(super) fn new(
-        surface: &RadialShape,
+        object: &CollisionObject<'a>,
+        target: &'a Target<'a>,
         hand: &'a Hand,
         sampling: &PoseSampling,
         cone: f64,
     ) -> Self {
-        let field = RadialField::new(surface.clone());
         let directions = sph::direction::even_directions(POINTS);
+        let (body, points) = match target {
+            Target::Radial(shape) => {
+                let field = RadialField::new((*shape).clone());
+                let points = directions.iter().map(|d| field.point(d)).collect();
+                (Body::Radial(Box::new(field)), points)
+            }
+            Target::Spherical(places) => {
+                let points = directions.iter().map(|d| places.field().point(d)).collect();
+                (Body::Spherical(places), points)
+            }
+        };
         Pairs {
-            radius: surface.radius_bounds().1,
-            points: directions.iter().map(|d| field.point(d)).collect(),
-            field,
+            radius: object.outer_radius(),
+            points,
+            body,
             jaws: sampling
                 .preshapes
                 .iter()
@@ -123,8 +142,10 @@ impl<'a> Pairs<'a> {
         widest: f64,
         rng: &mut R,
     ) -> Option<(Point3<f64>, Point3<f64>)> {
-        let towards = uniform_direction(rng);
-        let (first, inward) = self.field.contact(&towards);
+        let (first, inward) = match &self.body {
+            Body::Radial(field) => field.contact(&uniform_direction(rng)),
+            Body::Spherical(places) => places.draw(rng)?,
+        };
         // Uniform on the cap about the inward normal.
         let cosine = rng.random_range(self.cone.cos()..=1.0);
         let azimuth = rng.random_range(0.0..std::f64::consts::TAU);
@@ -132,44 +153,19 @@ impl<'a> Pairs<'a> {
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
         let (sin, cos) = azimuth.sin_cos();
         let way = inward.into_inner() * cosine + (a * cos + b * sin) * sine;
-        let width = self.exit(&first, &way, widest)?;
-        let second = first + way * width;
-        let (_, opposite) = self
-            .field
-            .contact(&Direction::try_new(second.coords, 1e-9)?);
-        (opposite.dot(&-way) >= self.cone.cos()).then_some((first, second))
-    }
-
-    /// Where a line that starts on the surface, or inside it, first leaves it within `longest`.
-    fn exit(&self, start: &Point3<f64>, way: &Vector3<f64>, longest: f64) -> Option<f64> {
-        let inside = |t: f64| {
-            let p = start + way * t;
-            Direction::try_new(p.coords, 1e-9)
-                .is_none_or(|d| p.coords.norm() < self.field.point(&d).coords.norm())
+        let (second, opposite) = match &self.body {
+            Body::Radial(field) => {
+                let second = first + way * exit(field, self.radius, &first, &way, widest)?;
+                let direction = Direction::try_new(second.coords, 1e-9)?;
+                (second, field.contact(&direction).1)
+            }
+            Body::Spherical(places) => {
+                let crossing = places.exit(&first, &way, widest)?;
+                let second = first + way * crossing.along;
+                (second, places.normal_at(&crossing)?)
+            }
         };
-        let step = STEP * self.radius;
-        let mut low = step;
-        if !inside(low) {
-            return None;
-        }
-        loop {
-            let mut high = low + step;
-            if !inside(high) {
-                for _ in 0..BISECTIONS {
-                    let middle = 0.5 * (low + high);
-                    if inside(middle) {
-                        low = middle;
-                    } else {
-                        high = middle;
-                    }
-                }
-                return (high <= longest).then_some(high);
-            }
-            if high > longest {
-                return None;
-            }
-            low = high;
-        }
+        (opposite.dot(&-way) >= self.cone.cos()).then_some((first, second))
     }
 
     /// The pose that brings the jaws about a pair, turned by `roll` about the line between its points
@@ -192,7 +188,11 @@ impl<'a> Pairs<'a> {
             return None;
         }
         let middle = nalgebra::center(first, second) + approach * shift;
-        let back = self.exit(&middle, &-approach, jaws.depth - CLEARANCE)?;
+        let longest = jaws.depth - CLEARANCE;
+        let back = match &self.body {
+            Body::Radial(field) => exit(field, self.radius, &middle, &-approach, longest)?,
+            Body::Spherical(places) => places.exit(&middle, &-approach, longest)?.along,
+        };
         if !(back < jaws.depth - CLEARANCE) {
             return None;
         }
@@ -229,4 +229,42 @@ fn uniform_direction<R: Rng + ?Sized>(rng: &mut R) -> Direction {
     let (sin, cos) = rng.random_range(0.0..std::f64::consts::TAU).sin_cos();
     let ring = (1.0 - z * z).max(0.0).sqrt();
     Direction::new_normalize(Vector3::new(ring * cos, ring * sin, z))
+}
+
+/// Where a line that starts on the surface, or inside it, first leaves it within `longest`.
+fn exit(
+    field: &RadialField,
+    radius: f64,
+    start: &Point3<f64>,
+    way: &Vector3<f64>,
+    longest: f64,
+) -> Option<f64> {
+    let inside = |t: f64| {
+        let p = start + way * t;
+        Direction::try_new(p.coords, 1e-9)
+            .is_none_or(|d| p.coords.norm() < field.point(&d).coords.norm())
+    };
+    let step = STEP * radius;
+    let mut low = step;
+    if !inside(low) {
+        return None;
+    }
+    loop {
+        let mut high = low + step;
+        if !inside(high) {
+            for _ in 0..BISECTIONS {
+                let middle = 0.5 * (low + high);
+                if inside(middle) {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            return (high <= longest).then_some(high);
+        }
+        if high > longest {
+            return None;
+        }
+        low = high;
+    }
 }

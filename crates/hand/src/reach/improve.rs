@@ -8,12 +8,13 @@
 use grasp::{Contact, Convention, GraspModel, QualityError, Workspace, epsilon};
 use nalgebra::{DVector, Point3};
 use rand::{Rng, RngExt};
-use shape::Surface;
+use shape::{Surface, SurfaceRef};
 use sph::Direction;
 use sph::direction::{log, retract, tangent_frame};
 
 use super::problem::{Task, state};
 use super::{ReachParams, Reached, Reacher};
+use crate::contact::even_axes;
 use crate::tip_model::TipModel;
 
 /// How a hand's grasp is improved.
@@ -154,8 +155,14 @@ impl Reacher<'_> {
         contacts
             .iter()
             .map(|p| {
-                let angle = spread / surface.radius(p);
                 let (a, b) = tangent_frame(p);
+                let (angle, (a, b)) = match surface {
+                    SurfaceRef::Radial(shape) => (spread / shape.radius(p), (a, b)),
+                    SurfaceRef::Spherical(field) => {
+                        let slope = field.differential(p).position_slope;
+                        (spread, even_axes(&(slope * a), &(slope * b), (a, b), 1.0))
+                    }
+                };
                 let mut draw = || angle * rng.random_range(-1.0..1.0);
                 let way = a * draw() + b * draw();
                 retract(p, &way)

@@ -113,7 +113,7 @@ impl<'a> Problem<'a> {
                 .map(|(f, pad)| pad_depth(hand, f, pad))
                 .collect(),
             pads,
-            depth: (0.7 * object.surface().radius_bounds().0).min(MAX_DEPTH),
+            depth: (0.7 * object.inner_radius()).min(MAX_DEPTH),
         }
     }
 
@@ -285,7 +285,8 @@ impl<'a> Problem<'a> {
         for &finger in task.fingers {
             let tip = &hand.fingers[finger];
             let touch = tip_contact(self.object, hand, tip, &closed.object_from_links)
-                .filter(|t| t.gap < rules.tip_gap)?;
+                .filter(|t| t.gap < rules.tip_gap)
+                .filter(|t| !self.object.is_closed_hole(&t.position))?;
             reached.directions.push(touch.direction);
             reached.contacts.push(Contact {
                 position: touch.position,

@@ -48,7 +48,7 @@ proptest! {
         let surface = lump(radius, &waves);
         let object = CollisionObject::new(&surface).unwrap();
         let mesh = parry_mesh(&surface, 121, 240);
-        let poses = PoseSampling::of_hand(&hand).sample(&surface, &hand, 4, &mut seeded(seed));
+        let poses = PoseSampling::of_hand(&hand).sample(&CollisionObject::new(&surface).unwrap(), &hand, 4, &mut seeded(seed));
         for pose in poses {
             let start = &hand.preshapes()[pose.preshape].joints;
             let rules = ClosingRules::default();
@@ -80,7 +80,7 @@ fn wrapped(
         past_tips,
         ..ClosingRules::default()
     };
-    let poses = sampling.sample(object.surface(), hand, count, &mut seeded(seed));
+    let poses = sampling.sample(object, hand, count, &mut seeded(seed));
     let close = |pose: HandPose| {
         let start = &hand.preshapes()[pose.preshape].joints;
         let closed = close_hand(object, hand, &pose.object_from_palm, start, &rules).ok()?;

@@ -194,7 +194,12 @@ fn antipodal_poses_are_about_opposite_points_and_from_above() {
     let params = paper_params(&hand, 80);
     let cone = params.sampling.antipodal.unwrap();
     let jaws = &hand.jaws(0).unwrap()[0];
-    for pose in params.sampling.sample(&surface, &hand, 80, &mut seeded(5)) {
+    for pose in params.sampling.sample(
+        &CollisionObject::new(&surface).unwrap(),
+        &hand,
+        80,
+        &mut seeded(5),
+    ) {
         let approach = pose.object_from_palm * hand.approach_axis();
         assert!(approach.z <= 1e-6);
         let middle = pose.object_from_palm * jaws.middle;

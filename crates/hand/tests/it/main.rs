@@ -1,6 +1,7 @@
 //! The tests of `hand` that use it from outside, as one program.
 
 mod above_support;
+mod any_surface;
 mod check;
 mod closing;
 mod common;

@@ -38,7 +38,12 @@ fn the_same_seed_gives_the_same_grasps_in_any_order_of_work() {
     let again = synthesize(&surface, &hand, &params, &mut seeded(7)).unwrap();
     assert_eq!(run, again);
     let object = CollisionObject::new(&surface).unwrap();
-    let poses = params.sampling.sample(&surface, &hand, 60, &mut seeded(7));
+    let poses = params.sampling.sample(
+        &CollisionObject::new(&surface).unwrap(),
+        &hand,
+        60,
+        &mut seeded(7),
+    );
     let mut outcomes: Vec<_> = poses
         .iter()
         .enumerate()
@@ -224,7 +229,12 @@ fn an_object_of_revolution_gives_the_same_counts_from_every_side() {
     let surface = egg(0.035, 0.4);
     let object = CollisionObject::new(&surface).unwrap();
     let params = paper_params(&hand, 0);
-    let poses = params.sampling.sample(&surface, &hand, 80, &mut seeded(9));
+    let poses = params.sampling.sample(
+        &CollisionObject::new(&surface).unwrap(),
+        &hand,
+        80,
+        &mut seeded(9),
+    );
     let counts = |turn: f64| {
         let about_z = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn);
         let turned = poses.iter().map(|pose| HandPose {
@@ -249,7 +259,12 @@ fn poses_aim_at_the_origin_from_the_upper_hemisphere() {
     let hand = schunk_sdh().unwrap();
     let surface = egg(0.04, 0.3);
     let sampling = hand::PoseSampling::of_hand(&hand);
-    let poses = sampling.sample(&surface, &hand, 500, &mut seeded(11));
+    let poses = sampling.sample(
+        &CollisionObject::new(&surface).unwrap(),
+        &hand,
+        500,
+        &mut seeded(11),
+    );
     let mut seen = [0, 0];
     let mut mean_height = 0.0;
     for pose in &poses {

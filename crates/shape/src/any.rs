@@ -1,0 +1,248 @@
+//! A surface of either kind: a member of M^rad or of M^sph.
+
+use nalgebra::{Point3, UnitVector3};
+use sph::Direction;
+
+use crate::closed_patch::ClosedPatch;
+use crate::mass::MassProperties;
+use crate::radial::RadialShape;
+use crate::radial_field::RadialField;
+use crate::spherical::SphericalShape;
+use crate::spherical_field::SphericalField;
+use crate::surface::{Differential, Surface};
+use crate::triangle_mesh::TriangleMesh;
+
+/// A surface whose validity is proved, of either kind.
+#[derive(Clone, Debug)]
+pub enum AnyShape {
+    /// A member of M^rad.
+    Radial(RadialShape),
+    /// A member of M^sph.
+    Spherical(SphericalShape),
+}
+
+/// The same prepared for being read at many points.
+#[derive(Clone, Debug)]
+pub enum AnyField {
+    /// A member of M^rad.
+    Radial(RadialField),
+    /// A map of the sphere.
+    Spherical(SphericalField),
+}
+
+/// A borrowed surface as collision tests read it.
+#[derive(Clone, Copy, Debug)]
+pub enum SurfaceRef<'a> {
+    /// A member of M^rad.
+    Radial(&'a RadialShape),
+    /// A map of the sphere.
+    Spherical(&'a SphericalField),
+}
+
+impl AnyShape {
+    /// L.
+    pub fn degree(&self) -> usize {
+        match self {
+            Self::Radial(shape) => shape.degree(),
+            Self::Spherical(shape) => shape.degree(),
+        }
+    }
+
+    /// Volume, centroid and inertia of the enclosed solid.
+    pub fn mass_properties(&self) -> &MassProperties {
+        match self {
+            Self::Radial(shape) => shape.mass_properties(),
+            Self::Spherical(shape) => shape.mass_properties(),
+        }
+    }
+
+    /// The regular (θ,φ) mesh, see [`RadialShape::mesh`].
+    pub fn mesh(&self, rows: usize, columns: usize) -> TriangleMesh {
+        match self {
+            Self::Radial(shape) => shape.mesh(rows, columns),
+            Self::Spherical(shape) => shape.mesh(rows, columns),
+        }
+    }
+
+    /// The radial shape, if it is one.
+    pub fn radial(&self) -> Option<&RadialShape> {
+        match self {
+            Self::Radial(shape) => Some(shape),
+            Self::Spherical(_) => None,
+        }
+    }
+
+    /// The spherical shape, if it is one.
+    pub fn spherical(&self) -> Option<&SphericalShape> {
+        match self {
+            Self::Radial(_) => None,
+            Self::Spherical(shape) => Some(shape),
+        }
+    }
+
+    /// Where the surface closes a hole of the object, centred frame; a radial shape closes none.
+    pub fn closed_patches(&self) -> &[ClosedPatch] {
+        self.spherical().map_or(&[], |s| s.closed_patches())
+    }
+
+    /// Prepares the shape for being read at many points; milliseconds at L = 50.
+    pub fn field(&self) -> AnyField {
+        match self {
+            Self::Radial(shape) => AnyField::Radial(RadialField::new(shape.clone())),
+            Self::Spherical(shape) => AnyField::Spherical(SphericalField::new(shape)),
+        }
+    }
+
+    fn surface(&self) -> &dyn Surface {
+        match self {
+            Self::Radial(surface) => surface,
+            Self::Spherical(surface) => surface,
+        }
+    }
+}
+
+impl AnyField {
+    /// Where the surface closes a hole of the object, centred frame.
+    pub fn closed_patches(&self) -> &[ClosedPatch] {
+        match self {
+            Self::Radial(_) => &[],
+            Self::Spherical(field) => field.closed_patches(),
+        }
+    }
+
+    /// The surface as collision tests read it.
+    pub fn as_surface(&self) -> SurfaceRef<'_> {
+        match self {
+            Self::Radial(field) => SurfaceRef::Radial(field.shape()),
+            Self::Spherical(field) => SurfaceRef::Spherical(field),
+        }
+    }
+
+    fn surface(&self) -> &dyn Surface {
+        match self {
+            Self::Radial(surface) => surface,
+            Self::Spherical(surface) => surface,
+        }
+    }
+}
+
+impl SurfaceRef<'_> {
+    /// The regular (θ,φ) mesh, see [`RadialShape::mesh`].
+    pub fn mesh(&self, rows: usize, columns: usize) -> TriangleMesh {
+        match self {
+            Self::Radial(shape) => shape.mesh(rows, columns),
+            Self::Spherical(field) => field.mesh(rows, columns),
+        }
+    }
+
+    /// Where the surface closes a hole of the object, centred frame.
+    pub fn closed_patches(&self) -> &[ClosedPatch] {
+        match self {
+            Self::Radial(_) => &[],
+            Self::Spherical(field) => field.closed_patches(),
+        }
+    }
+
+    fn surface(&self) -> &dyn Surface {
+        match self {
+            Self::Radial(surface) => *surface,
+            Self::Spherical(surface) => *surface,
+        }
+    }
+}
+
+impl From<RadialShape> for AnyShape {
+    fn from(shape: RadialShape) -> Self {
+        Self::Radial(shape)
+    }
+}
+
+impl From<SphericalShape> for AnyShape {
+    fn from(shape: SphericalShape) -> Self {
+        Self::Spherical(shape)
+    }
+}
+
+impl From<RadialField> for AnyField {
+    fn from(field: RadialField) -> Self {
+        Self::Radial(field)
+    }
+}
+
+impl From<SphericalField> for AnyField {
+    fn from(field: SphericalField) -> Self {
+        Self::Spherical(field)
+    }
+}
+
+impl<'a> From<&'a RadialShape> for SurfaceRef<'a> {
+    fn from(shape: &'a RadialShape) -> Self {
+        Self::Radial(shape)
+    }
+}
+
+impl<'a> From<&'a SphericalField> for SurfaceRef<'a> {
+    fn from(field: &'a SphericalField) -> Self {
+        Self::Spherical(field)
+    }
+}
+
+impl<'a> From<&'a AnyField> for SurfaceRef<'a> {
+    fn from(field: &'a AnyField) -> Self {
+        field.as_surface()
+    }
+}
+
+impl Surface for AnyShape {
+    fn point(&self, p: &Direction) -> Point3<f64> {
+        self.surface().point(p)
+    }
+
+    fn contact(&self, p: &Direction) -> (Point3<f64>, UnitVector3<f64>) {
+        self.surface().contact(p)
+    }
+
+    fn differential(&self, p: &Direction) -> Differential {
+        self.surface().differential(p)
+    }
+
+    fn centre_of_mass(&self) -> Point3<f64> {
+        self.surface().centre_of_mass()
+    }
+}
+
+impl Surface for AnyField {
+    fn point(&self, p: &Direction) -> Point3<f64> {
+        self.surface().point(p)
+    }
+
+    fn contact(&self, p: &Direction) -> (Point3<f64>, UnitVector3<f64>) {
+        self.surface().contact(p)
+    }
+
+    fn differential(&self, p: &Direction) -> Differential {
+        self.surface().differential(p)
+    }
+
+    fn centre_of_mass(&self) -> Point3<f64> {
+        self.surface().centre_of_mass()
+    }
+}
+
+impl Surface for SurfaceRef<'_> {
+    fn point(&self, p: &Direction) -> Point3<f64> {
+        self.surface().point(p)
+    }
+
+    fn contact(&self, p: &Direction) -> (Point3<f64>, UnitVector3<f64>) {
+        self.surface().contact(p)
+    }
+
+    fn differential(&self, p: &Direction) -> Differential {
+        self.surface().differential(p)
+    }
+
+    fn centre_of_mass(&self) -> Point3<f64> {
+        self.surface().centre_of_mass()
+    }
+}
