@@ -25,9 +25,9 @@ pub enum AnyShape {
 #[derive(Clone, Debug)]
 pub enum AnyField {
     /// A member of M^rad.
-    Radial(RadialField),
+    Radial(Box<RadialField>),
     /// A map of the sphere.
-    Spherical(SphericalField),
+    Spherical(Box<SphericalField>),
 }
 
 /// A borrowed surface as collision tests read it.
@@ -88,8 +88,8 @@ impl AnyShape {
     /// Prepares the shape for being read at many points; milliseconds at L = 50.
     pub fn field(&self) -> AnyField {
         match self {
-            Self::Radial(shape) => AnyField::Radial(RadialField::new(shape.clone())),
-            Self::Spherical(shape) => AnyField::Spherical(SphericalField::new(shape)),
+            Self::Radial(shape) => RadialField::new(shape.clone()).into(),
+            Self::Spherical(shape) => SphericalField::new(shape).into(),
         }
     }
 
@@ -120,8 +120,8 @@ impl AnyField {
 
     fn surface(&self) -> &dyn Surface {
         match self {
-            Self::Radial(surface) => surface,
-            Self::Spherical(surface) => surface,
+            Self::Radial(surface) => &**surface,
+            Self::Spherical(surface) => &**surface,
         }
     }
 }
@@ -165,13 +165,13 @@ impl From<SphericalShape> for AnyShape {
 
 impl From<RadialField> for AnyField {
     fn from(field: RadialField) -> Self {
-        Self::Radial(field)
+        Self::Radial(Box::new(field))
     }
 }
 
 impl From<SphericalField> for AnyField {
     fn from(field: SphericalField) -> Self {
-        Self::Spherical(field)
+        Self::Spherical(Box::new(field))
     }
 }
 
