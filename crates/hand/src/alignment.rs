@@ -1,9 +1,9 @@
-//! The motion that brings points nearest to others.
+//! The rigid motion that brings points nearest to others.
 
 use grasp::Contact;
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
-/// Depth under a contact of the second point that stands for its normal, metres.
+/// Depth below a contact of the second point, which represents its normal, metres.
 pub(crate) const DEPTH: f64 = 0.03;
 
 /// The motion with the least sum of squared distances of `motion * from` and `to` (Kabsch 1976).
@@ -15,7 +15,7 @@ pub(crate) fn align(pairs: &[(Point3<f64>, Point3<f64>)]) -> Isometry3<f64> {
     for (p, q) in pairs {
         covariance += (q.coords - to) * (p.coords - from).transpose();
     }
-    // Not a number in, and the iteration would have no end of its own.
+    // With a NaN in the input the iteration would not end.
     let svd = covariance.try_svd(true, true, f64::EPSILON, 200);
     let rotation = match svd.map(|svd| (svd.u, svd.v_t)) {
         Some((Some(u), Some(v_t))) => {
@@ -30,16 +30,17 @@ pub(crate) fn align(pairs: &[(Point3<f64>, Point3<f64>)]) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::from(to - rotation * from), rotation)
 }
 
-/// A contact and the point below it, so that a motion of both says how the normal turns.
+/// A contact and the point below it. A motion that fits both also fits the normal.
 pub(crate) fn contact_points(contact: &Contact) -> [Point3<f64>; 2] {
     let below = contact.position + contact.inward_normal.into_inner() * DEPTH;
     [contact.position, below]
 }
 
-/// The pose of a hand moved along with its contacts: where a hand that holds `from` on one object
-/// would have to be, rigidly, to come nearest to `to` on another.
+/// The pose of a hand after the rigid motion that brings its contacts `from` on one object nearest
+/// to the contacts `to` on another.
 ///
-/// Contacts correspond by index, each with its normal; those without a partner are left out.
+/// Contacts correspond by index, and each includes its normal. Contacts without a partner are
+/// ignored.
 pub fn carried_pose(
     object_from_palm: &Isometry3<f64>,
     from: &[Contact],
@@ -80,7 +81,7 @@ mod tests {
         let palm = Isometry3::new(Vector3::new(0.0, 0.1, 0.2), Vector3::new(1.0, 0.0, 0.5));
         let moved = carried_pose(&palm, &from, &to);
         assert!((moved.to_matrix() - (motion * palm).to_matrix()).norm() <= 1e-12);
-        // Mirrored contacts have no motion onto each other; a rotation comes back all the same.
+        // No rigid motion maps contacts onto their mirror image; the result is a rotation even so.
         let mirrored = from.map(|c| Contact {
             position: Point3::new(c.position.x, c.position.y, -c.position.z - 0.01),
             inward_normal: c.inward_normal,

@@ -1,4 +1,4 @@
-//! The hands that come with the program: a simplified Schunk SDH and two grippers.
+//! The built-in hands: a simplified Schunk SDH and two grippers.
 
 use thiserror::Error;
 
@@ -22,7 +22,7 @@ const BUILT_IN: [(&str, &str, &str); 3] = [
     ),
 ];
 
-/// Why a hand could not be had from its two texts.
+/// Why a hand could not be made from a URDF and a spec.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum LoadError {
     /// The URDF was refused.
@@ -43,16 +43,16 @@ pub fn schunk_sdh() -> Result<Hand, LoadError> {
 }
 
 impl Hand {
-    /// The hand of a URDF, used as a TOML says. The URDF's collision geometry is made of primitives:
-    /// for meshes see [`crate::load_urdf_with_meshes`].
+    /// The hand described by a URDF and a TOML spec. The collision geometry of the URDF must
+    /// consist of primitives; for meshes see [`crate::load_urdf_with_meshes`].
     ///
     /// # Errors
-    /// One of the texts is refused, or they do not fit each other.
+    /// One of the texts is refused, or the spec does not match the URDF.
     pub fn from_texts(urdf: &str, spec: &str) -> Result<Self, LoadError> {
         Ok(Self::new(load_urdf(urdf)?, &HandSpec::from_toml(spec)?)?)
     }
 
-    /// The hand that moduli carries under a name, one of [`Hand::BUILT_IN`].
+    /// The built-in hand of a name, one of [`Hand::BUILT_IN`].
     ///
     /// ```
     /// let gripper = hand::Hand::built_in("panda").unwrap()?;
@@ -65,10 +65,10 @@ impl Hand {
         Some(Self::from_texts(urdf, spec))
     }
 
-    /// The names of the hands that moduli carries.
+    /// The names of the built-in hands.
     pub const BUILT_IN: [&str; 3] = [BUILT_IN[0].0, BUILT_IN[1].0, BUILT_IN[2].0];
 
-    /// The Schunk SDH that moduli carries, see [`schunk_sdh`].
+    /// The built-in Schunk SDH, see [`schunk_sdh`].
     ///
     /// ```
     /// let hand = hand::Hand::schunk_sdh()?;
@@ -77,7 +77,7 @@ impl Hand {
     /// ```
     ///
     /// # Errors
-    /// The carried files are not usable, which a test excludes.
+    /// The built-in files cannot be read; a test excludes it.
     pub fn schunk_sdh() -> Result<Self, LoadError> {
         schunk_sdh()
     }

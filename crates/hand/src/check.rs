@@ -1,4 +1,4 @@
-//! What a user should know about a hand of theirs before it grasps anything.
+//! Findings about a user's hand.
 
 mod units;
 
@@ -12,21 +12,21 @@ use crate::hand::{Finger, Hand, Preshape};
 use crate::kinematics::KinematicsError;
 use crate::model::Geometry;
 
-/// How much a finding matters.
+/// The severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// Good to know.
+    /// A note.
     Note,
-    /// Probably not meant.
+    /// Probably a mistake.
     Warning,
     /// No grasp will be found.
     Error,
 }
 
-/// One thing that was noticed.
+/// A finding.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Finding {
-    /// How much it matters.
+    /// Its severity.
     pub severity: Severity,
     /// A sentence with names and numbers.
     pub text: String,
@@ -43,10 +43,10 @@ impl fmt::Display for Finding {
     }
 }
 
-/// Looks for what would keep a loaded hand from grasping, the gravest first.
+/// Looks for faults that keep a loaded hand from grasping, the most severe first.
 ///
-/// `self_clearance` (metres) is the distance that parts must keep from each other. What
-/// is wrong with names and numbers of URDF and spec is an error of [`Hand::new`] already.
+/// `self_clearance` (metres) is the least distance between parts. Faults in the names and numbers
+/// of URDF and spec are errors of [`Hand::new`].
 pub fn check_hand(hand: &Hand, self_clearance: f64) -> Result<Vec<Finding>, KinematicsError> {
     let mut findings = Vec::new();
     for preshape in hand.preshapes() {
@@ -200,8 +200,8 @@ fn geometry(hand: &Hand, findings: &mut Vec<Finding>) {
     }
 }
 
-/// The collision geometry of the hand at given joint values, one mesh a link with
-/// geometry, in the palm frame: for pictures.
+/// The collision geometry of the hand at given joint values, one mesh per link with geometry, in
+/// the palm frame, for display.
 pub fn hand_meshes(
     hand: &Hand,
     joints: &[f64],

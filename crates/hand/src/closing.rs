@@ -1,4 +1,4 @@
-//! Closing the fingers of a hand on an object without ever passing through it.
+//! Closing the fingers of a hand on an object without penetration.
 
 mod above;
 mod group;
@@ -12,10 +12,10 @@ use group::close_group;
 use shape::Support;
 use wrapping::wrap_group;
 
-/// A finger that could close no farther than this in a step has come to rest; in units of closing.
+/// A finger has come to rest if a step closes it by less than this, in units of closing.
 const LEAST_STEP: f64 = 1e-7;
 
-/// When fingers have arrived and what must stay clear (paper, Sec. IV-C).
+/// The closing rules: when fingers have arrived, and the clearances (paper, Sec. IV-C).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClosingRules {
     /// A tip has arrived when it is nearer to the surface than this, metres.
@@ -24,19 +24,19 @@ pub struct ClosingRules {
     pub object_clearance: f64,
     /// Parts of the hand stay at least this far from each other, metres.
     pub self_clearance: f64,
-    /// Close past the tips (power grasps): where a link other than a tip meets the object it
-    /// holds it as a tip does, the joints that move it stop and those beyond go on.
+    /// Close past the tips (power grasps): a link other than a tip that touches the object makes a
+    /// contact as a tip does. The joints that move it stop, and the joints beyond it continue.
     pub past_tips: bool,
     /// The plane on which the object stands, if it stands on one.
     pub support: Option<Support>,
     /// Every part of the hand stays at least this far above that plane, metres.
     pub support_clearance: f64,
-    /// Distances are found to this accuracy where they decide, metres.
+    /// Accuracy of distances near a threshold, metres.
     pub tolerance: f64,
 }
 
 impl Default for ClosingRules {
-    /// The paper's 1 mm, 5 mm and 5 mm, tips only; no support, of which 3 mm would be kept.
+    /// The paper's 1 mm, 5 mm and 5 mm, tips only; no support, with a clearance of 3 mm for one.
     fn default() -> Self {
         ClosingRules {
             tip_gap: 1e-3,
@@ -50,7 +50,7 @@ impl Default for ClosingRules {
     }
 }
 
-/// Why a pose of the hand gives no grasp. Links and fingers by index.
+/// Why a pose of the hand gives no grasp. Links and fingers are given by index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rejection {
     /// A link is below the support plane, or too near to it.
@@ -63,7 +63,7 @@ pub enum Rejection {
         /// The link.
         link: usize,
     },
-    /// A finger is in the object before it begins to close.
+    /// A finger is in the object before it starts to close.
     StartsInObject {
         /// The finger.
         finger: usize,
@@ -73,7 +73,7 @@ pub enum Rejection {
         /// The link.
         link: usize,
     },
-    /// The finger closed to its joint limits and its tip met nothing.
+    /// The finger closed to its joint limits and its tip touched nothing.
     TipDidNotArrive {
         /// The finger.
         finger: usize,
@@ -102,10 +102,10 @@ pub enum Rejection {
 pub struct ClosedHand {
     /// One value per driven joint.
     pub joints: Vec<f64>,
-    /// Pose of every link in the object frame; that of the palm, the first, is the one from which the
-    /// hand closed, unless the palm gave way ([`crate::FingerGroup::compliant`]).
+    /// Pose of every link in the centred frame. That of the palm, the first, is unchanged, unless
+    /// the palm is compliant ([`crate::FingerGroup::compliant`]).
     pub object_from_links: Vec<Isometry3<f64>>,
-    /// Links that hold the object, finger by finger, from the palm outwards.
+    /// Links that touch the object, finger by finger, from the palm outwards.
     pub touching: Vec<usize>,
     /// Steps taken by all fingers together.
     pub steps: usize,
@@ -114,12 +114,16 @@ pub struct ClosedHand {
 /// Closes every finger from `joints` until its tip has arrived, or with
 /// [`ClosingRules::past_tips`] until all its joints have stopped.
 ///
-/// Each step is the distance still free divided by a bound on the speed of the moving
-/// points (conservative advancement), so no part passes into the surface. Fingers stop
-/// one by one, each on its own; fingers that the same joints close stop together. Where not all need to
-/// touch ([`Hand::least_fingers`]), those that meet nothing stay as they started. How they pass each other on the way depends on when each
-/// motor runs, which nobody has said, so their distance is tested where they end. Errors: the
-/// first rule broken.
+///
+/// Each step is the distance still free divided by a bound on the speed of the moving points
+/// (conservative advancement), so no part passes into the surface. Each finger stops separately;
+/// fingers that the same joints close stop together. If not all must touch
+/// ([`Hand::least_fingers`]), those that touch nothing keep their first joint values. Clearance
+/// between fingers is tested in the final pose only, since the closing order is unspecified.
+///
+/// # Errors
+///
+/// The first rule that is broken.
 pub fn close_hand(
     object: &CollisionObject<'_>,
     hand: &Hand,
@@ -150,7 +154,7 @@ pub fn close_hand(
         };
         match closed {
             Err(reason @ Rejection::TipDidNotArrive { .. }) => {
-                // What holds nothing stays open.
+                // Fingers without a contact stay open.
                 missing = missing.or(Some(reason));
                 reopen(hand, group, joints, &mut state);
             }
@@ -185,13 +189,13 @@ fn reopen(hand: &Hand, group: &FingerGroup, joints: &[f64], state: &mut ClosedHa
     state.touching.retain(|l| !group.moving_links.contains(l));
 }
 
-/// Number of fingers of which a link touches.
+/// Number of fingers with a link that touches.
 fn arrived(hand: &Hand, state: &ClosedHand) -> usize {
     let touches = |f: &&Finger| f.moving_links.iter().any(|l| state.touching.contains(l));
     hand.fingers.iter().filter(touches).count()
 }
 
-/// Links that no finger moves must be clear of the object.
+/// Checks that the links that no finger moves are clear of the object.
 fn check_base(
     object: &CollisionObject<'_>,
     hand: &Hand,

@@ -9,20 +9,20 @@ use crate::collision::{CollisionObject, LinkShape, Precision};
 use crate::hand::{Finger, Hand};
 
 const MAX_STEPS: usize = 40;
-/// The descent ends where the sine of the angle between normal and connecting line is below this.
+/// The descent ends when the sine of the angle between normal and connecting line is below this.
 const ANGLE_TOLERANCE: f64 = 1e-6;
 
-/// Where a tip meets the surface.
+/// The contact of a tip and the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TipContact {
     /// The place of the closest point on the sphere; for a radial surface its direction from the
     /// object's origin.
     pub direction: Direction,
-    /// The closest point of the surface, object frame, metres.
+    /// The closest point of the surface, centred frame, metres.
     pub position: Point3<f64>,
     /// Inward unit normal of the surface there.
     pub inward_normal: nalgebra::UnitVector3<f64>,
-    /// The closest point of the tip, object frame, metres.
+    /// The closest point of the tip, centred frame, metres.
     pub on_tip: Point3<f64>,
     /// Distance between the two, metres.
     pub gap: f64,
@@ -88,13 +88,13 @@ fn closest(
     })
 }
 
-/// The pieces of a tip in the object frame.
+/// The pieces of a tip in the centred frame.
 struct Tip<'a> {
     links: Vec<(&'a LinkShape, Isometry3<f64>)>,
 }
 
 impl Tip<'_> {
-    /// The point of the tip closest to p and its distance; none if p is in the tip.
+    /// The point of the tip closest to p and its distance; `None` if p is in the tip.
     fn closest(&self, p: &Point3<f64>) -> Option<(Point3<f64>, f64)> {
         let mut best: Option<(Point3<f64>, f64)> = None;
         for (link, pose) in &self.links {
@@ -115,7 +115,7 @@ impl Tip<'_> {
     }
 }
 
-/// Directions near a start by two coordinates of the tangent plane there.
+/// A chart of the directions near a start: two coordinates of the tangent plane there.
 struct Chart<'a> {
     surface: SurfaceRef<'a>,
     start: Direction,

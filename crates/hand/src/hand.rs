@@ -39,7 +39,7 @@ pub struct Finger {
 pub struct Preshape {
     /// Its name.
     pub name: String,
-    /// One value a driven joint.
+    /// One value per driven joint.
     pub joints: Vec<f64>,
 }
 
@@ -178,7 +178,7 @@ pub enum HandError {
         /// What is wrong.
         source: GeometryError,
     },
-    /// Joint values that give no poses.
+    /// The joint values give no poses.
     #[error(transparent)]
     Kinematics(#[from] KinematicsError),
 }

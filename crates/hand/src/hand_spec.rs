@@ -1,6 +1,6 @@
-//! How a hand is used: a short TOML beside its URDF.
+//! The spec of a hand: a short TOML file beside its URDF.
 //!
-//! Names only; [`crate::Hand::new`] resolves them against the model.
+//! It contains names; [`crate::Hand::new`] resolves them against the model.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use thiserror::Error;
 /// The largest TOML text accepted, in bytes.
 pub(crate) const MAX_SPEC_BYTES: usize = 1 << 20;
 
-/// What fingers there are, how they close and how the hand starts.
+/// Fingers, closing joints and pre-shapes of a hand.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandSpec {
@@ -27,15 +27,15 @@ pub struct HandSpec {
     /// Least and greatest distance from the surface to the approach point of sampled
     /// poses, along the line of approach, in metres.
     pub standoff_m: [f64; 2],
-    /// Whether the palm gives way along the line between the tips of two fingers that the same joints
-    /// close, until both touch, as a gripper on a robot's arm does; true unless said otherwise.
+    /// Whether the palm moves along the line between the tips of two fingers that the same joints
+    /// close, until both touch, as a gripper on a compliant arm does. The default is true.
     #[serde(default)]
     pub compliant: Option<bool>,
-    /// Radius of the part of a tip that touches, metres: the disc of the soft contacts of a hand of two
-    /// fingers.
+    /// Radius of the contact area of a tip, metres: the disc of the soft contacts of a hand with
+    /// two fingers.
     #[serde(default)]
     pub pad_radius_m: Option<f64>,
-    /// How many fingers must touch for a grasp; all unless said otherwise.
+    /// Number of fingers that must touch in a grasp. The default is all.
     #[serde(default)]
     pub least_fingers: Option<usize>,
     /// Which links are not tested against each other.
@@ -47,7 +47,7 @@ pub struct HandSpec {
     pub preshape: Vec<PreshapeSpec>,
 }
 
-/// Which pairs of links are exempt from the rule that parts keep a distance.
+/// The pairs of links that are exempt from the clearance between parts.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SelfDistance {
@@ -78,11 +78,11 @@ impl Default for SelfDistance {
 pub struct FingerSpec {
     /// Its name.
     pub name: String,
-    /// The links that make its tip: those that may touch the object.
+    /// The links of its tip, which may touch the object.
     pub tips: Vec<String>,
-    /// The driven joints that close it, each with its share of the closing motion
-    /// (radians or metres per unit of closing; negative where closing lowers the value). Fingers that
-    /// the same joints close have the same shares.
+    /// The driven joints that close it, each with its rate (radians or metres per unit of closing;
+    /// negative where closing lowers the value). Fingers that the same joints close have the same
+    /// rates.
     pub closing: BTreeMap<String, f64>,
 }
 
@@ -97,7 +97,7 @@ pub struct PreshapeSpec {
     pub joints: BTreeMap<String, f64>,
 }
 
-/// Why a TOML text is no hand spec.
+/// Why a TOML text is not a hand spec.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SpecTextError {
     /// The text is too long.
@@ -106,13 +106,13 @@ pub enum SpecTextError {
         /// Its length.
         bytes: usize,
     },
-    /// Not TOML, or not these keys.
+    /// The text is not TOML or has other keys.
     #[error("not a hand spec: {0}")]
     Toml(String),
 }
 
 impl HandSpec {
-    /// Reads a spec from TOML text. Unknown keys are errors, so that a misspelt one is seen.
+    /// Reads a spec from TOML text. Unknown keys are errors, so that misspelt keys are noticed.
     pub fn from_toml(text: &str) -> Result<Self, SpecTextError> {
         if text.len() > MAX_SPEC_BYTES {
             return Err(SpecTextError::TooLarge { bytes: text.len() });

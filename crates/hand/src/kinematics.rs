@@ -1,4 +1,4 @@
-//! Where the links are for given joint values.
+//! Forward kinematics: the poses of the links for given joint values.
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use thiserror::Error;
@@ -57,8 +57,12 @@ impl Joint {
 impl HandModel {
     /// Pose of every link in the frame of the root link, in the order of the links.
     ///
-    /// `driven` has one value a driven joint, radians or metres; limits are not applied.
-    /// Errors: a wrong number of values, a value that is not finite.
+    ///
+    /// `driven` has one value per driven joint, radians or metres. Limits are not applied.
+    ///
+    /// # Errors
+    ///
+    /// The number of values is wrong, or a value is not finite.
     pub fn root_from_links(&self, driven: &[f64]) -> Result<Vec<Isometry3<f64>>, KinematicsError> {
         if driven.len() != self.driven.len() {
             return Err(KinematicsError::Count {

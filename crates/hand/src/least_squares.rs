@@ -1,8 +1,8 @@
-//! Damped least squares with box limits, for a handful of variables.
+//! Damped least squares with box limits, for few variables.
 
 use nalgebra::{DMatrix, DVector};
 
-/// When the iteration ends.
+/// Termination criteria.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stopping {
     pub(crate) iterations: usize,
@@ -12,11 +12,11 @@ pub(crate) struct Stopping {
     pub(crate) decrease: f64,
 }
 
-/// Minimises ½|f(x)|² from `x` (Levenberg–Marquardt, forward differences); `project` puts
-/// a point back within its limits. Returns the cost; deterministic.
+/// Minimises ½|f(x)|² from `x` (Levenberg–Marquardt, forward differences); `project` moves a point
+/// into its limits. Returns the cost; deterministic.
 ///
-/// For the slopes `residuals` is given those of a point next by as well: entries that vanish
-/// there may be left at 0, which saves the work of terms that are idle.
+/// For the differences, `residuals` also receives the residuals at the base point. Entries that are
+/// zero there may be skipped.
 pub(crate) fn minimise(
     x: &mut DVector<f64>,
     stopping: Stopping,
@@ -74,7 +74,8 @@ fn jacobian(
     slope
 }
 
-/// (JᵀJ + λ diag(JᵀJ))⁻¹ Jᵀr, with a floor on the diagonal so that idle variables stay put.
+/// (JᵀJ + λ diag(JᵀJ))⁻¹ Jᵀr, with a lower bound on the diagonal, so that variables without
+/// influence do not move.
 fn damped_step(
     curvature: &DMatrix<f64>,
     gradient: &DVector<f64>,

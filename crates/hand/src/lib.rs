@@ -1,9 +1,9 @@
 //! Hands from URDF files and the grasps that they can make on smooth objects.
 //!
-//! A [`HandModel`] is the kinematic tree, a [`HandSpec`] says how it is used, a [`Hand`]
-//! is both, checked. [`synthesize`] samples poses around a surface, closes the fingers
-//! and ranks the grasps (paper, Sec. IV-C). The palm frame is the root link's; lengths
-//! in metres, angles in radians.
+//! A [`HandModel`] is the kinematic tree, a [`HandSpec`] names fingers, closing joints and
+//! pre-shapes, and a [`Hand`] is a checked pair of the two. [`synthesize`] samples poses around a
+//! surface, closes the fingers and ranks the grasps (paper, Sec. IV-C). The palm frame is that of
+//! the root link. Lengths are in metres, angles in radians.
 //!
 //! ```
 //! use hand::Hand;

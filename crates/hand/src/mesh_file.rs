@@ -29,7 +29,7 @@ pub enum MeshFileError {
         /// How many.
         vertices: usize,
     },
-    /// The file is damaged, of no format that is read, or no mesh at all.
+    /// The file is damaged, has an unsupported format, or is not a mesh.
     #[error(transparent)]
     Load(#[from] LoadError),
 }
@@ -37,7 +37,7 @@ pub enum MeshFileError {
 /// Vertices of a mesh that a face uses, in the file's unit and order; all vertices of a file without
 /// faces.
 ///
-/// The content decides the format; `name`, the file's name, decides where the content leaves it open
+/// The format is recognised by the content; where that is ambiguous, by the file name `name`
 /// ([`shape::io::read_cloud`]).
 ///
 /// # Errors

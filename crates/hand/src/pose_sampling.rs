@@ -1,5 +1,5 @@
-//! Random hand poses around an object: from all sides (paper, Sec. IV-C), or for two fingers where
-//! the surface has antipodal pairs.
+//! Random hand poses around an object: from all sides (paper, Sec. IV-C), or for two fingers at
+//! antipodal pairs of the surface.
 
 mod antipodal;
 mod obstacles;
@@ -14,26 +14,27 @@ use antipodal::Pairs;
 use places::Target;
 use shape::Support;
 
-/// Draws of one pose beyond the first.
+/// Largest number of repeated draws per pose.
 const REDRAWS: usize = 50;
 
 /// A pose of the hand before its fingers close.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HandPose {
-    /// Pose of the palm (the root link) in the object frame.
+    /// Pose of the palm (the root link) in the centred frame.
     pub object_from_palm: Isometry3<f64>,
     /// Index of the pre-shape.
     pub preshape: usize,
 }
 
-/// What is drawn: all uniformly and independently.
+/// The distribution of poses; all quantities are uniform and independent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseSampling {
-    /// Least height of the direction from which the hand comes, on the unit sphere, along z or along the
-    /// normal of the support; 0 is the upper hemisphere of the paper, -1 the whole sphere.
+    /// Least height, on the unit sphere, of the direction from which the hand approaches, along z
+    /// or along the normal of the support. 0 is the upper hemisphere of the paper, -1 the whole
+    /// sphere.
     pub least_height: f64,
-    /// The plane on which the object stands, and how far above it the links of the open hand are,
-    /// metres: poses are drawn again, up to fifty times, until they are.
+    /// The plane on which the object stands, and the least height above it of the links of the open
+    /// hand, metres. Poses are drawn again, up to fifty times, until the hand is above it.
     pub support: Option<(Support, f64)>,
     /// Range of the distance from the surface to the approach point, along the line of
     /// approach, metres.
@@ -65,12 +66,13 @@ impl PoseSampling {
     /// is aimed at a point half-way through such a part instead, below a place drawn by area, and the
     /// stand-off is measured from one of the places where the line of approach leaves the surface.
     ///
-    /// With [`Self::antipodal`] the jaws of the pre-shape are set about a pair of points on the surface
-    /// instead: the first in a uniform direction, the line between them uniform in the friction cone of
-    /// the first and within that of the second, their distance less than the opening; the approach is
-    /// uniform about the line, among the directions in which points of the surface are clear of the
-    /// links that may not touch, with the fingers open and closed. Where
-    /// no such pair is found in a hundred draws, or the hand has no jaws, the pose is one of those above.
+    /// With [`Self::antipodal`] the jaws of the pre-shape are placed at a pair of points on the
+    /// surface instead: the first in a uniform direction, the line between them uniform in the
+    /// friction cone of the first and within that of the second, their distance less than the
+    /// opening; the approach is uniform about the line, among the directions in which points of the
+    /// surface are clear of the links that may not touch, with the fingers open and closed. Where
+    /// no such pair is found in a hundred draws, or the hand has no jaws, the pose is one of those
+    /// above.
     ///
     /// The same generator state gives the same poses.
     pub fn sample<R: Rng + ?Sized>(
@@ -160,13 +162,14 @@ fn upright(normal: &UnitVector3<f64>) -> UnitQuaternion<f64> {
     })
 }
 
-/// The pose whose line of approach runs from `from · distance` to the origin.
+/// The pose whose line of approach goes from `from · distance` to the origin.
 ///
-/// `from` is a direction of the object frame, `roll` (radians) turns about the approach.
+/// `from` is a direction of the centred frame, `roll` (radians) is a rotation about the approach.
 pub fn aimed(hand: &Hand, from: &UnitVector3<f64>, distance: f64, roll: f64) -> Isometry3<f64> {
     let towards = -*from;
     let approach = hand.approach_axis();
-    // Opposite directions have no shortest rotation; any half turn across does.
+    // Between opposite directions the shortest rotation is not unique; any half turn about a
+    // perpendicular axis will do.
     let turn = UnitQuaternion::rotation_between(&approach, &towards).unwrap_or_else(|| {
         let (across, _) = sph::direction::tangent_frame(&approach);
         UnitQuaternion::from_axis_angle(&UnitVector3::new_normalize(across), std::f64::consts::PI)

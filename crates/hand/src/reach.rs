@@ -1,10 +1,10 @@
 //! From contacts to a hand: a pose and joint values that bring the tips to given contacts.
 //!
-//! Every start is a random pose about the contacts and an assignment of fingers to them.
-//! Damped least squares over pose and joints brings the tips to the contacts, facing
-//! along the inward normals, with the other parts clear of the object and the joints within their
-//! limits. Then the fingers are opened a little and closed again by the closing rules, so
-//! that what is reported touches the surface and breaks no rule.
+//! Every start is a random pose near the contacts with an assignment of fingers to them. Damped
+//! least squares over pose and joints brings the tips to the contacts, facing along the inward
+//! normals, with the other parts clear of the object and the joints within their limits. Then the
+//! fingers are opened a little and closed again by the closing rules, so that the reported hand
+//! touches the surface and breaks no rule.
 
 mod improve;
 mod problem;
@@ -25,18 +25,18 @@ use start::{Start, orders};
 /// A start whose tips come nearer than this (root sum of squares, metres) is closed and checked.
 const PROMISING: f64 = 3e-3;
 
-/// What is wanted of a hand that reaches contacts.
+/// Settings of a search for a hand pose at contacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReachParams {
     /// Number of random starts, at most.
     pub starts: usize,
-    /// Contacts may be this far from where they were wanted, metres.
+    /// Largest distance of a contact from the wanted one, metres.
     pub tolerance: f64,
     /// The friction coefficient: normals may differ by its angle.
     pub friction: f64,
-    /// The rules that the closed hand keeps.
+    /// The rules that the closed hand satisfies.
     pub rules: ClosingRules,
-    /// How far fingers open before they close again, in units of closing.
+    /// Amount by which the fingers open before they close again, in units of closing.
     pub opening: f64,
 }
 
@@ -53,27 +53,27 @@ impl Default for ReachParams {
     }
 }
 
-/// A hand somewhere.
+/// The state of a hand: its pose and joints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HandState {
-    /// Pose of the palm (the root link) in the object frame.
+    /// Pose of the palm (the root link) in the centred frame.
     pub object_from_palm: Isometry3<f64>,
-    /// One value a driven joint.
+    /// One value per driven joint.
     pub joints: Vec<f64>,
 }
 
-/// A hand at contacts.
+/// A hand whose tips are at contacts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reached {
-    /// Pose of the palm (the root link) in the object frame.
+    /// Pose of the palm (the root link) in the centred frame.
     pub object_from_palm: Isometry3<f64>,
-    /// One value a driven joint.
+    /// One value per driven joint.
     pub joints: Vec<f64>,
-    /// Which finger holds each wanted contact.
+    /// The finger at each wanted contact.
     pub finger_of_contact: Vec<usize>,
-    /// The contacts that the hand makes, in the order of the wanted ones.
+    /// The hand's contacts, in the order of the wanted ones.
     pub contacts: Vec<Contact>,
-    /// Their directions from the object's origin.
+    /// Their directions from the origin of the centred frame.
     pub directions: Vec<Direction>,
     /// Largest distance between a contact and the wanted one, metres.
     pub position_error: f64,
@@ -84,7 +84,7 @@ pub struct Reached {
 }
 
 impl Reached {
-    /// Measures how far the contacts are from wanted ones.
+    /// Measures the distances of the contacts from the wanted ones.
     fn measure_errors(&mut self, wanted: &[Contact]) {
         (self.position_error, self.normal_error) = (0.0, 0.0);
         for (made, wanted) in self.contacts.iter().zip(wanted) {
@@ -96,19 +96,19 @@ impl Reached {
     }
 }
 
-/// How reaching contacts went.
+/// The result of a search at contacts.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ReachOutcome {
-    /// Within the tolerance and without a rule broken.
+    /// A hand within the tolerance that satisfies every rule.
     Reached(Reached),
-    /// All rules kept, but not as near as wanted; the nearest.
+    /// The nearest hand that satisfies every rule, outside the tolerance.
     Near(Reached),
-    /// No start ended in a hand that keeps the rules.
+    /// No start ended in a hand that satisfies the rules.
     Nothing {
         /// Least root sum of squared distances of tips and contacts, metres.
         best_fit: f64,
     },
-    /// There are not as many contacts as fingers.
+    /// The number of contacts is not the number of fingers.
     WrongCount {
         /// Contacts wanted.
         contacts: usize,
@@ -117,15 +117,15 @@ pub enum ReachOutcome {
     },
 }
 
-/// A hand and an object, prepared for looking for hand poses at contacts.
+/// A hand and an object, prepared for searches of hand poses at contacts.
 #[derive(Debug, Clone)]
 pub struct Reacher<'a> {
     problem: Problem<'a>,
 }
 
-/// Looks for a hand pose whose tips meet the wanted contacts (object frame).
+/// Looks for a hand pose whose tips meet the wanted contacts (centred frame).
 ///
-/// The same as [`Reacher::reach`] without known hands, for one search on an object.
+/// As [`Reacher::reach`] without known hands, for one search on an object.
 pub fn reach_contacts<R: Rng + ?Sized>(
     object: &CollisionObject<'_>,
     hand: &Hand,
@@ -137,18 +137,18 @@ pub fn reach_contacts<R: Rng + ?Sized>(
 }
 
 impl<'a> Reacher<'a> {
-    /// Prepares both; for any number of searches.
+    /// Prepares a hand and an object for any number of searches.
     pub fn new(object: &'a CollisionObject<'a>, hand: &'a Hand) -> Self {
         Reacher {
             problem: Problem::new(object, hand),
         }
     }
 
-    /// Looks for a hand pose whose tips meet the wanted contacts (object frame).
+    /// Looks for a hand pose whose tips meet the wanted contacts (centred frame).
     ///
     /// Starts from the hands in `known` (see [`crate::carried_pose`]), then from random ones that
-    /// suit the contacts, and stops at the first within the tolerance. The same generator state
-    /// gives the same result. Cost: a millisecond a start.
+    /// fit the contacts, and stops at the first within the tolerance. The same generator state
+    /// gives the same result. Cost: about a millisecond per start.
     pub fn reach<R: Rng + ?Sized>(
         &self,
         wanted: &[Contact],

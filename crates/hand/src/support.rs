@@ -9,7 +9,8 @@ impl Hand {
     /// The link that is nearest to a plane, or farthest below it, and its least height, for poses of
     /// all links in the plane's frame; `None` for a hand without geometry.
     ///
-    /// Exact for primitives and for the hulls that stand in for meshes. Linear in the pieces.
+    /// Exact for primitives and for the convex hulls that replace meshes. Linear in the number of
+    /// pieces.
     pub fn lowest_link(&self, support: &Support, poses: &[Isometry3<f64>]) -> Option<(usize, f64)> {
         let heights = (0..self.shapes.len()).filter_map(|link| {
             let height = self.link_height(link, support, &poses[link])?;

@@ -17,18 +17,18 @@ use crate::hand::Hand;
 use crate::pose_sampling::{HandPose, PoseSampling};
 use crate::tip_model::TipModel;
 
-/// What a synthesis run does.
+/// Settings of a synthesis run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SynthesisParams {
     /// Number of poses to try.
     pub poses: usize,
-    /// How poses are drawn.
+    /// The distribution of the poses.
     pub sampling: PoseSampling,
-    /// When fingers have arrived and what stays clear.
+    /// The closing rules: when fingers have arrived, and the clearances.
     pub rules: ClosingRules,
     /// How quality is measured.
     pub convention: Convention,
-    /// The point about which torques are taken, object frame, metres.
+    /// The point about which torques are taken, centred frame, metres.
     pub centre: Point3<f64>,
     /// What the contacts transmit, apart from friction.
     pub tips: TipModel,
@@ -39,14 +39,14 @@ pub struct SynthesisParams {
 /// A grasp that a hand can make.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HandGrasp {
-    /// Pose of the palm (the root link) in the object frame.
+    /// Pose of the palm (the root link) in the centred frame.
     pub object_from_palm: Isometry3<f64>,
-    /// One value a driven joint, in the order of [`crate::HandModel::driven_names`].
+    /// One value per driven joint, in the order of [`crate::HandModel::driven_names`].
     pub joints: Vec<f64>,
     /// Index of the pre-shape from which the fingers closed.
     pub preshape: usize,
-    /// One contact a finger, or with [`ClosingRules::past_tips`] one a link that touches; object
-    /// frame, inward normals.
+    /// One contact per finger, or with [`ClosingRules::past_tips`] one per link that touches;
+    /// centred frame, inward normals.
     pub contacts: Vec<Contact>,
     /// Directions of the contacts from the origin: the grasp's point of (S²)^m.
     pub directions: Vec<Direction>,
@@ -58,7 +58,7 @@ pub struct HandGrasp {
     pub quality: f64,
 }
 
-/// What became of one pose.
+/// The outcome of one pose.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
     /// A grasp of at least the wanted quality.
@@ -69,7 +69,7 @@ pub enum Outcome {
     Rejected(Rejection),
 }
 
-/// How many poses ended how.
+/// The number of poses by outcome.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct OutcomeCounts {
     /// Stable grasps.
@@ -80,7 +80,7 @@ pub struct OutcomeCounts {
     pub rejected: BTreeMap<Rejection, usize>,
 }
 
-/// Ranked grasps and the fate of all poses.
+/// Ranked grasps and the outcomes of all poses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Synthesis {
     /// Stable grasps, the best first.
@@ -115,7 +115,7 @@ impl OutcomeCounts {
         self.stable + self.unstable + self.rejected.values().sum::<usize>()
     }
 
-    /// Rejected poses by kind of reason, links and fingers summed, in a fixed order.
+    /// Rejected poses by kind of reason, summed over links and fingers, in a fixed order.
     pub fn by_reason(&self) -> Vec<(&'static str, usize)> {
         Rejection::REASONS
             .iter()
@@ -128,7 +128,7 @@ impl OutcomeCounts {
 }
 
 impl Rejection {
-    /// All reasons, in the order in which a pose meets them.
+    /// All reasons, in the order in which they are tested.
     pub const REASONS: [&'static str; 8] = [
         "below_support",
         "base_near_object",
@@ -187,7 +187,7 @@ impl Rejection {
     }
 }
 
-/// Samples poses, closes the hand from each and ranks what is stable.
+/// Samples poses, closes the hand from each and ranks the stable grasps.
 ///
 /// Poses are drawn in one sequence, then evaluated on the threads of rayon's pool; the result does not
 /// depend on their number.
@@ -203,7 +203,7 @@ pub fn synthesize<'a, R: Rng + ?Sized>(
     synthesize_watched(surface, hand, params, rng, &|| {})
 }
 
-/// The same; `pose_done` is called once per pose, from any thread.
+/// As [`synthesize`]; `pose_done` is called once per pose, from any thread.
 ///
 /// # Errors
 /// As [`synthesize`].
@@ -288,7 +288,7 @@ fn close_and_touch(
         let near = |c: &TipContact| c.gap < rules.tip_gap;
         let touches = |l: &usize| closed.touching.contains(l);
         if !rules.past_tips {
-            // Where not all fingers need to touch, this one may not.
+            // If not all fingers must touch, this one need not.
             if !of_finger.tip_links.iter().any(touches) {
                 continue;
             }
@@ -309,8 +309,8 @@ fn close_and_touch(
     Ok(grasp)
 }
 
-/// Counts outcomes and ranks the stable grasps, the best first; equal ones stay in the
-/// order of their poses.
+/// Counts outcomes and ranks the stable grasps, the best first. Equal ones keep the order of their
+/// poses.
 pub fn collect(outcomes: impl IntoIterator<Item = Outcome>) -> Synthesis {
     let mut counts = OutcomeCounts::default();
     let mut grasps = Vec::new();

@@ -1,18 +1,17 @@
-//! What the contact of a fingertip transmits.
+//! Contact models of fingertips.
 
 use grasp::ContactModel;
 
-/// What the contacts of a hand's tips transmit, apart from the friction coefficient, which a
-/// convention says.
+/// The contact model of a hand's tips without the friction coefficient, which the convention gives.
 ///
-/// Two point contacts never resist a torque about the line between them, so the grasps of a hand of
-/// two fingers need one of the others.
+/// Two point contacts resist no torque about the line between them, so grasps of a hand with two
+/// fingers need one of the other models.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum TipModel {
     /// A hard point with Coulomb friction.
     #[default]
     Point,
-    /// A soft finger: a disc under even pressure, which resists torsion too
+    /// A soft finger: a disc under uniform pressure, which also resists torsion
     /// ([`ContactModel::soft_disc`]).
     Soft {
         /// Radius of the disc, metres.
@@ -35,7 +34,7 @@ impl TipModel {
         }
     }
 
-    /// One model per contact; none for points, which every convention has already.
+    /// One model per contact; `None` for hard points, the default of every convention.
     pub fn of_contacts(&self, friction: f64, contacts: usize) -> Vec<ContactModel> {
         match self {
             TipModel::Point => Vec::new(),

@@ -1,8 +1,8 @@
 //! A [`HandModel`] from a URDF text; the only user of urdf-rs.
 //!
-//! A hand needs the tree of links, collision geometry, axes, limits and mimics. Masses, efforts, visuals
-//! and the elements of simulators are left out before urdf-rs reads the text. Everything that is read is
-//! checked and refused by name.
+//! A hand needs the tree of links, collision geometry, axes, limits and mimics. Masses, efforts,
+//! visuals and the elements of simulators are removed before urdf-rs reads the text. Every entry
+//! that is read is checked; errors name it.
 
 mod document;
 mod encoding;
@@ -20,7 +20,7 @@ pub use xml::{MAX_URDF_BYTES, MAX_URDF_DEPTH, MAX_URDF_ELEMENTS};
 
 /// The largest number of links or of joints accepted.
 pub const MAX_LINKS: usize = 512;
-/// The largest number of collision pieces a link accepted.
+/// The largest number of collision pieces per link accepted.
 pub const MAX_PIECES: usize = 64;
 /// The largest length (origin, size of geometry) accepted, in metres.
 pub const MAX_LENGTH_M: f64 = 10.0;
@@ -62,26 +62,26 @@ pub enum UrdfError {
         /// What is wrong.
         what: String,
     },
-    /// An entry that is no number.
+    /// An entry that is not a number.
     #[error("'{word}' in the {what} at byte {byte} is no number")]
     NotANumber {
-        /// Where the element stands that holds it.
+        /// Position of its element.
         byte: usize,
         /// Its attribute.
         what: &'static str,
         /// The entry, its first 40 characters.
         word: String,
     },
-    /// An attribute with another number of entries than it should have.
+    /// An attribute with a wrong number of entries.
     #[error("the {what} at byte {byte} has {count} numbers, expected {expected}")]
     Count {
-        /// Where the element stands that holds it.
+        /// Position of its element.
         byte: usize,
         /// Its attribute.
         what: &'static str,
-        /// How many numbers it has.
+        /// Number of entries found.
         count: usize,
-        /// How many it should have.
+        /// Number of entries expected.
         expected: usize,
     },
     /// A document type (and so possibly entities) is declared.
@@ -90,7 +90,7 @@ pub enum UrdfError {
         /// Where.
         byte: usize,
     },
-    /// The file is another thing than a URDF.
+    /// The file is not a URDF.
     #[error("this is {found}, not a URDF; {advice}")]
     Foreign {
         /// What it is.
@@ -144,7 +144,7 @@ pub enum UrdfError {
         kind: String,
         /// The unit of its values.
         unit: &'static str,
-        /// What else would do.
+        /// An alternative.
         otherwise: &'static str,
     },
     /// No link at all.
@@ -184,7 +184,7 @@ pub enum UrdfError {
         /// A link that is not under the first root.
         link: String,
     },
-    /// A number is not finite or absurdly large.
+    /// A number is not finite or too large.
     #[error("{what} of '{item}' is {value}")]
     Number {
         /// The link or joint.
@@ -217,7 +217,7 @@ pub enum UrdfError {
         /// Its kind.
         kind: String,
     },
-    /// A mimic joint follows something that cannot be followed.
+    /// A mimic joint refers to a joint that it cannot follow.
     #[error("joint '{joint}' mimics '{of}', which {why}")]
     Mimic {
         /// The joint.
@@ -227,7 +227,7 @@ pub enum UrdfError {
         /// What is wrong with it.
         why: &'static str,
     },
-    /// A collision mesh could not be had.
+    /// A collision mesh could not be read.
     #[error("collision mesh '{file}' of link '{link}': {reason}")]
     Mesh {
         /// The link.
@@ -241,7 +241,12 @@ pub enum UrdfError {
 
 /// Reads a hand whose collision geometry is made of primitives; meshes are refused by name.
 ///
-/// Errors: see [`UrdfError`]. Linear in the text.
+///
+/// Linear in the text.
+///
+/// # Errors
+///
+/// See [`UrdfError`].
 pub fn load_urdf(text: &str) -> Result<HandModel, UrdfError> {
     load_urdf_with_meshes(text, |_| {
         Err::<Vec<u8>, _>("this loader was given no meshes".to_string())
@@ -251,7 +256,7 @@ pub fn load_urdf(text: &str) -> Result<HandModel, UrdfError> {
 /// Reads a hand; `mesh_bytes` returns the content of a mesh file by its name in the URDF.
 ///
 /// Each collision mesh (STL, OBJ, PLY or OFF, recognised by content) becomes the convex hull of its
-/// vertices. The caller decides which names it resolves and where.
+/// vertices. The caller decides which names it resolves, and to which files.
 pub fn load_urdf_with_meshes<E: std::fmt::Display>(
     text: &str,
     mesh_bytes: impl Fn(&str) -> Result<Vec<u8>, E>,

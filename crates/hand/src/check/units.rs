@@ -1,4 +1,4 @@
-//! Numbers of a hand that look as if they were meant in another unit.
+//! Numbers of a hand that look like another unit.
 
 use nalgebra::{Point3, Vector3};
 
@@ -7,13 +7,13 @@ use crate::hand::{Finger, Hand};
 use crate::model::{Drive, Geometry, Joint, JointKind};
 use crate::urdf::UNLIMITED;
 
-/// Sliding joints of hands go less far than this, metres.
+/// Usual upper bound on the range of sliding joints, metres.
 const LONGEST_SLIDE: f64 = 0.3;
-/// Parts of hands are shorter than this, metres.
+/// Usual upper bound on the length of parts, metres.
 const LONGEST_PART: f64 = 0.8;
-/// A mesh that is shorter than this has been scaled once too often, metres.
+/// A shorter mesh was probably scaled twice, metres.
 const SHORTEST_PART: f64 = 5e-4;
-/// Rounding of a full turn in files, radians.
+/// Tolerance for a rounded full turn in files, radians.
 const ROUNDING: f64 = 1e-2;
 
 /// Joint limits that look like degrees or millimetres, and closing joints without limits.
@@ -68,7 +68,7 @@ fn other_unit(joint: &Joint) -> Option<String> {
     }
 }
 
-/// Meshes of another size than parts of hands have, with the scale that would mend it.
+/// Meshes whose size is unusual for parts of hands, with the scale that corrects it.
 pub(super) fn meshes(hand: &Hand, findings: &mut Vec<Finding>) {
     for link in hand.model().links() {
         for piece in &link.geometry {
@@ -104,7 +104,7 @@ fn extent(points: &[Point3<f64>]) -> Vector3<f64> {
     greatest - least
 }
 
-/// Parts of hands are one to thirty centimetres long.
+/// Parts of hands are between one and thirty centimetres long.
 fn likely_scale(length: f64) -> (&'static str, f64) {
     if length < 4.0 {
         ("centimetres or inches", 0.01)

@@ -1,14 +1,14 @@
-//! Whether the links stay above the plane on which the object stands.
+//! Checks that the links stay above the plane on which the object stands.
 
 use nalgebra::Isometry3;
 
 use super::{ClosedHand, ClosingRules, Rejection};
 use crate::hand::{FingerGroup, Hand};
 
-/// Stations between the start and the end of a group's way at which its links are looked at.
+/// Number of states of a group's closing motion at which its links are tested.
 const STATIONS: usize = 12;
 
-/// Every link is above the plane by the clearance.
+/// Checks that every link is above the plane by the clearance.
 pub(super) fn check_all(
     hand: &Hand,
     poses: &[Isometry3<f64>],
@@ -23,10 +23,9 @@ pub(super) fn check_all(
     }
 }
 
-/// The links of a group are above the plane on their way from the joints before it closed.
+/// Checks that the links of a group stay above the plane during its closing motion.
 ///
-/// The way is that of the joints alone: where the palm has given way it is seen from where the palm
-/// ended.
+/// Only the joints are varied; for a compliant group the palm has its final pose.
 pub(super) fn check_way(
     hand: &Hand,
     group: &FingerGroup,

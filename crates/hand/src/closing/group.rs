@@ -6,14 +6,15 @@ use super::{ClosedHand, ClosingRules, LEAST_STEP, Rejection, clearance, tip_gap}
 use crate::collision::{CollisionObject, Precision};
 use crate::hand::{FingerGroup, Hand};
 
-/// The palm gives way in moves longer than this, metres.
+/// Least move of a compliant palm, metres.
 const LEAST_SHIFT: f64 = 1e-6;
-/// Share of a free distance that the palm moves at once.
+/// Fraction of a free distance that the palm moves in one step.
 const SAFE: f64 = 0.9;
-/// Moves of one closing, at most; from both sides in the middle a few dozen do.
+/// Largest number of steps of one closing; a few dozen suffice when the tips start on both sides of
+/// the middle.
 const MAX_STEPS: usize = 4000;
 
-/// A group on its way.
+/// The state of a group while it closes.
 struct Closing<'a> {
     object: &'a CollisionObject<'a>,
     hand: &'a Hand,
@@ -24,10 +25,13 @@ struct Closing<'a> {
 
 /// Closes a group by conservative advancement until the tips of its fingers have arrived.
 ///
-/// The joints stop when the first tip arrives. Where the group is compliant the palm moves along the
-/// line between the tips, so that both come near together.
+/// The joints stop when the first tip arrives. If the group is compliant, the palm moves along the
+/// line between the tips, so that both gaps become equal.
 ///
-/// Errors: a tip starts in the object or does not arrive, or another part comes too near.
+///
+/// # Errors
+///
+/// A tip starts in the object or does not arrive, or another part comes too near.
 pub(super) fn close_group(
     object: &CollisionObject<'_>,
     hand: &Hand,
@@ -43,7 +47,7 @@ pub(super) fn close_group(
         start: state.joints.clone(),
     };
     let end = closing.range();
-    // The tips are brought to half of the gap, between touching and not having arrived.
+    // The tips move to half of the gap, between overlap and the threshold of arrival.
     let aim = 0.5 * rules.tip_gap;
     let mut closed = 0.0;
     for _ in 0..MAX_STEPS {
@@ -74,8 +78,8 @@ pub(super) fn close_group(
             return Err(Rejection::TipDidNotArrive { finger: late });
         }
         if !(step > LEAST_STEP) {
-            // As near as the facets tell apart, and that is not near enough; or the first tip has
-            // arrived and holds the joints.
+            // The distance is at the resolution of the facets and still above the gap, or the first
+            // tip has arrived and stops the joints.
             return Err(if group.fingers.len() == 1 {
                 Rejection::NoContact { finger: late }
             } else {
@@ -91,7 +95,7 @@ pub(super) fn close_group(
 }
 
 impl Closing<'_> {
-    /// How far the group can close before all its joints are at their limits.
+    /// The amount of closing after which all joints of the group are at their limits.
     fn range(&self) -> f64 {
         let left = |&(driven, ratio): &(usize, f64)| {
             let (lower, upper) = self.limits(driven);
@@ -117,7 +121,7 @@ impl Closing<'_> {
         );
     }
 
-    /// Bounds on the distance of each finger's tip, exact enough to tell whether it has arrived.
+    /// Bounds on the distance of each finger's tip, exact enough to decide whether it has arrived.
     fn gaps(&self, state: &ClosedHand) -> Vec<(f64, f64)> {
         let precision = Precision {
             cutoff: f64::INFINITY,
@@ -172,16 +176,17 @@ impl Closing<'_> {
             .fold(0.0, f64::max)
     }
 
-    /// Moves the whole hand along the line between the two tips towards equal gaps; whether it moved.
+    /// Moves the whole hand along the line between the two tips towards equal gaps; returns whether
+    /// it moved.
     ///
-    /// No link moves farther than it is from the object, so none passes into it.
+    /// No link moves farther than its distance from the object, so none penetrates it.
     fn recentre(&self, gaps: &[(f64, f64)], state: &mut ClosedHand) -> Result<bool, Rejection> {
         let &[(first, _), (second, _)] = gaps else {
             return Ok(false);
         };
         let axis = self.axis(state);
         let wanted = 0.5 * (second - first);
-        // Distances are known to a tenth; within that the tips are level.
+        // Distances are known to a tenth; gaps that agree within that count as equal.
         if wanted.abs() < (0.06 * first.max(second)).max(2.0 * self.rules.tolerance) {
             return Ok(false);
         }
@@ -207,7 +212,8 @@ impl Closing<'_> {
         Ok(true)
     }
 
-    /// The way from the second tip to the first across the approach, object frame.
+    /// The direction from the second tip to the first, perpendicular to the approach, centred
+    /// frame.
     fn axis(&self, state: &ClosedHand) -> Vector3<f64> {
         let middle = |finger: usize| {
             let link = self.hand.fingers[self.group.fingers[finger]].tip_links[0];

@@ -1,10 +1,10 @@
-//! Closing fingers past their tips: every joint goes on until a link that it moves touches.
+//! Closing fingers past their tips: every joint moves until a link that it moves touches.
 
 use super::{ClosedHand, ClosingRules, LEAST_STEP, Rejection};
 use crate::collision::{CollisionObject, Gap, Precision};
 use crate::hand::{FingerGroup, Hand};
 
-/// A group's closing joints on their way.
+/// The state of a group's closing joints.
 struct Wrapping<'a> {
     object: &'a CollisionObject<'a>,
     hand: &'a Hand,
@@ -16,9 +16,13 @@ struct Wrapping<'a> {
 
 /// Closes a group joint by joint, by conservative advancement as with tips alone.
 ///
-/// A joint stops at its limit and when any link that it moves has come within the tip gap; a
-/// joint only ever closes. Errors: a finger starts in the object, or
-/// none of its links touches.
+///
+/// A joint stops at its limit or when any link that it moves is within the tip gap. Joints never
+/// open.
+///
+/// # Errors
+///
+/// A finger starts in the object, or none of its links touches.
 pub(super) fn wrap_group(
     object: &CollisionObject<'_>,
     hand: &Hand,
@@ -63,10 +67,10 @@ pub(super) fn wrap_group(
 }
 
 impl Wrapping<'_> {
-    /// The step that every link allows; links that have arrived stop their joints. None where a
-    /// link is in the object.
+    /// The step that every link allows; links that have arrived stop their joints. `None` if a link
+    /// is in the object.
     fn free_step(&mut self, state: &ClosedHand) -> Option<f64> {
-        // A link is brought to half of the gap, between touching and not having arrived.
+        // A link moves to half of the gap, between overlap and the threshold of arrival.
         let aim = 0.5 * self.rules.tip_gap;
         let mut step = f64::INFINITY;
         for (k, &link) in self.group.moving_links.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! How far pieces and links reach in a direction.
+//! Support functions of pieces and links.
 
 use nalgebra::Vector3;
 use parry3d_f64::shape::SupportMap;

@@ -2,14 +2,14 @@
 
 use nalgebra::Point3;
 
-/// Bounds on a distance to the mesh, metres; 0 where bodies meet.
+/// Bounds on a distance to the mesh, metres; 0 where the bodies overlap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gap {
     /// The distance is at least this.
     pub lower: f64,
     /// The distance is at most this; infinite beyond the cutoff.
     pub upper: f64,
-    /// A point of the mesh at distance `upper`, in the centred frame, where there is one.
+    /// A point of the mesh at distance `upper`, in the centred frame, if one was found.
     pub on_object: Option<Point3<f64>>,
     /// A vertex of the grid next to that point: its row and column.
     pub(crate) near: Option<Vertex>,

@@ -11,7 +11,7 @@ use super::piece::{ConvexPiece, LinkShape};
 use super::piece_frame::PieceFrame;
 use super::tree::{Content, Tree};
 
-/// Nodes on the way down a balanced tree never exceed this.
+/// Capacity of the stack of nodes; the depth of a balanced tree never exceeds it.
 const STACK: usize = 64;
 
 /// Why an object cannot take part in collision tests.
@@ -55,7 +55,7 @@ pub struct CollisionObject<'a> {
 /// How exactly a distance is wanted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Precision {
-    /// Distances beyond this need not be told apart, metres.
+    /// Distances beyond this are not resolved, metres.
     pub cutoff: f64,
     /// Upper and lower bound may differ by this, metres,
     pub absolute: f64,
@@ -64,17 +64,17 @@ pub struct Precision {
 }
 
 impl<'a> CollisionObject<'a> {
-    /// Facets are to stay this near to the surface, metres, where the finest grid allows.
+    /// Wanted distance of the facets from the surface, metres; the finest grid may miss it.
     pub const FACET_TOLERANCE: f64 = 5e-5;
-    /// Facets farther off than this, metres, are refused by [`Self::new`]: a quarter of the gap at
-    /// which a tip counts as arrived.
+    /// [`Self::new`] refuses facets farther from the surface than this, metres: a quarter of the
+    /// gap at which a tip counts as arrived.
     pub const FACET_LIMIT: f64 = 2.5e-4;
-    /// The coarsest grid that [`Self::new`] tries; up to two times it is halved.
+    /// The coarsest grid that [`Self::new`] tries. Its spacing is halved at most twice.
     const COARSE_GRID: (usize, usize) = (121, 240);
 
     /// Prepares a surface on the coarsest of three grids whose facets stay within
-    /// [`Self::FACET_TOLERANCE`] of it ([`Self::mesh_error`] says how near they are); beyond
-    /// [`Self::FACET_LIMIT`] on the finest it is an error.
+    /// [`Self::FACET_TOLERANCE`] of it. [`Self::mesh_error`] is the distance reached. More than
+    /// [`Self::FACET_LIMIT`] on the finest grid is an error.
     pub fn new(surface: impl Into<SurfaceRef<'a>>) -> Result<Self, ObjectError> {
         let surface = surface.into();
         let (mut rows, mut columns) = Self::COARSE_GRID;
@@ -174,7 +174,8 @@ impl<'a> CollisionObject<'a> {
         }
     }
 
-    /// Bounds on the distance of a link to the object; a link wholly inside touches.
+    /// Bounds on the distance of a link to the object. A link that is wholly inside has the
+    /// distance 0.
     pub(crate) fn link_gap(
         &self,
         link: &LinkShape,
@@ -203,8 +204,8 @@ impl<'a> CollisionObject<'a> {
 
     /// Whether the origin of any piece of the link is inside the object.
     ///
-    /// The mesh is hollow: a piece wholly inside keeps a distance from it, and only this
-    /// tells it from one outside.
+    /// The mesh is a surface without an interior, so a piece wholly inside has a positive distance
+    /// from it. This test distinguishes such a piece from one outside.
     pub(crate) fn holds_piece_of(&self, link: &LinkShape, pose: &Isometry3<f64>) -> bool {
         link.pieces.iter().any(|piece| {
             let origin = pose * Point3::from(piece.link_from_piece.translation.vector);
@@ -261,7 +262,7 @@ impl<'a> CollisionObject<'a> {
 }
 
 impl Precision {
-    /// Patches farther than this cannot matter once a distance `upper` has been seen.
+    /// The distance beyond which patches are pruned when the least distance found is `upper`.
     fn settled(&self, upper: f64) -> f64 {
         let slack = self.absolute.max(self.relative * upper);
         self.cutoff.min(if upper.is_finite() {
@@ -272,7 +273,8 @@ impl Precision {
     }
 }
 
-/// Largest normal second difference of neighbouring vertices, over 8, both ways summed.
+/// Largest normal second difference of neighbouring vertices, divided by 8; the sum over both
+/// directions of the grid.
 fn facet_error(mesh: &TriangleMesh, columns: usize) -> f64 {
     let rows = mesh.vertices.len() / columns;
     let at = |row: usize, column: usize| mesh.vertices[row * columns + column % columns].coords;

@@ -6,7 +6,7 @@ use super::gap::{Gap, Vertex};
 use super::piece::ConvexPiece;
 use super::tree::Node;
 
-/// A piece and the motion from the object frame to its own.
+/// A piece and the motion from the centred frame to its own.
 pub(super) struct PieceFrame<'a> {
     piece: &'a ConvexPiece,
     object_from_piece: Isometry3<f64>,

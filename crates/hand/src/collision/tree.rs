@@ -14,10 +14,10 @@ use sph::{Direction, SphericalCoords};
 use super::gap::Vertex;
 use super::piece::direction_or_z;
 
-/// Cells in a leaf.
+/// Largest number of cells in a leaf.
 const LEAF_CELLS: usize = 2;
 
-/// What a node holds.
+/// The content of a node.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Content {
     /// The cells of a block of the grid.
@@ -152,7 +152,7 @@ impl Tree {
         }
     }
 
-    /// Halves a block across its longer side; none when it is a leaf.
+    /// Halves a block across its longer side; `None` for a leaf.
     fn split(&self, block: Block) -> Option<(Block, Block)> {
         let ((r0, r1), (c0, c1)) = (block.rows, block.columns);
         if (r1 - r0) * (c1 - c0) <= LEAF_CELLS {

@@ -11,9 +11,9 @@ use crate::model::HandModel;
 pub struct FingerGroup {
     /// The fingers, by index.
     pub fingers: Vec<usize>,
-    /// Driven joints that close them with their share of the motion.
+    /// Driven joints that close them, with their rates.
     pub closing: Vec<(usize, f64)>,
-    /// Whether the palm gives way along the line between the two tips until both touch.
+    /// Whether the palm moves along the line between the two tips until both touch.
     pub compliant: bool,
     /// Links that move when it closes, parents first.
     pub(crate) moving_links: Vec<usize>,
@@ -23,7 +23,7 @@ pub struct FingerGroup {
     pub(crate) joint_speeds: Vec<Vec<f64>>,
 }
 
-/// Puts fingers that share a closing joint into one group, and gives each link that moves to one
+/// Puts fingers that share a closing joint into one group, and assigns each moving link to one
 /// finger of its group.
 pub(super) fn groups(
     model: &HandModel,
@@ -75,7 +75,7 @@ fn group(model: &HandModel, shapes: &[LinkShape], index: usize, finger: &Finger)
     }
 }
 
-/// Each link that the group moves belongs to the finger with whose tip it shares most joints.
+/// Assigns each link that the group moves to the finger with whose tip it shares most joints.
 fn divide_links(model: &HandModel, group: &FingerGroup, fingers: &mut [Finger]) {
     if group.fingers.len() < 2 {
         return;

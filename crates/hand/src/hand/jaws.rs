@@ -1,11 +1,11 @@
-//! The two tips of a gripper as jaws: which way they close, how far they open, how deep they reach.
+//! The two tips of a gripper as jaws: closing axis, opening and depth.
 
 use nalgebra::{Isometry3, Point3, UnitVector3};
 
 use super::Hand;
 use crate::kinematics::KinematicsError;
 
-/// Stations of the way from the pre-shape to the end of the closing joints.
+/// Number of states between the pre-shape and the limits of the closing joints.
 const STATIONS: usize = 24;
 
 /// Two tips that face each other, in the palm frame.
@@ -15,8 +15,8 @@ pub struct Jaws {
     pub joints: Vec<f64>,
     /// From the second tip to the first, across the line of approach.
     pub axis: UnitVector3<f64>,
-    /// The middle between the tips: at the height of the approach point in the pre-shape, and where the
-    /// tips advance while they close, as much farther along the approach.
+    /// The middle between the tips. In the pre-shape it has the height of the approach point; if
+    /// the tips advance along the approach while they close, it advances with them.
     pub middle: Point3<f64>,
     /// The distance between the tips, metres.
     pub opening: f64,
@@ -25,11 +25,12 @@ pub struct Jaws {
 }
 
 impl Hand {
-    /// The jaws of a hand of two fingers that close from a pre-shape, by index: the widest first, none
-    /// where the tips have met. Empty for other hands and where the tips lie one behind the other.
+    /// The jaws of a hand of two fingers while they close from a pre-shape, given by its index: the
+    /// widest first, until the tips meet. Empty for other hands, and if one tip is behind the
+    /// other.
     ///
     /// # Errors
-    /// Joint values that give no poses.
+    /// The joint values give no poses.
     pub fn jaws(&self, preshape: usize) -> Result<Vec<Jaws>, KinematicsError> {
         let mut all = Vec::new();
         let Some(start) = self.preshapes.get(preshape) else {
@@ -54,7 +55,8 @@ impl Hand {
         Ok(all)
     }
 
-    /// The joints with every group closed by this share of the way to the ends of its joints.
+    /// The joints with every group closed by this fraction of the range to the limits of its
+    /// joints.
     pub fn closed(&self, joints: &[f64], share: f64) -> Vec<f64> {
         let mut closed = joints.to_vec();
         for group in &self.groups {
@@ -81,7 +83,7 @@ impl Hand {
             - self.tip_centre(second.tip_links[0], poses);
         let axis = UnitVector3::try_new(across - approach * across.dot(&approach), 1e-6)?;
         let start = self.approach_point + approach * advance;
-        // How far each tip is from the start along the axis.
+        // Displacement of each tip from the start along the axis.
         let far = |links: &[usize], way: f64| {
             let of_link = |&l: &usize| {
                 let offset = self.shapes[l].offset_to(&poses[l], &start);

@@ -1,4 +1,4 @@
-//! Everything that is wrong with a spec, where [`Hand::new`] stops at the first thing.
+//! All faults of a spec; [`Hand::new`] stops at the first one.
 
 use super::groups::groups;
 use super::resolve::{
@@ -11,8 +11,8 @@ use crate::hand_spec::{FingerSpec, HandSpec, PreshapeSpec};
 use crate::model::HandModel;
 
 impl Hand {
-    /// All that keeps a spec from fitting a model, in the order of the spec; empty if and only if
-    /// [`Hand::new`] makes a hand of the two.
+    /// All faults that keep a spec from matching a model, in the order of the spec. Empty if and
+    /// only if [`Hand::new`] succeeds.
     pub fn problems(model: &HandModel, spec: &HandSpec) -> Vec<HandError> {
         let mut found: Vec<HandError> = palm(model, spec).err().into_iter().collect();
         found.extend(approach(spec).err());
@@ -50,7 +50,7 @@ fn finger_problems(model: &HandModel, shapes: &[LinkShape], spec: &HandSpec) -> 
     found
 }
 
-/// Names and numbers of one finger that are wrong by themselves.
+/// Faults in the names and numbers of one finger.
 fn finger_names(model: &HandModel, spec: &FingerSpec) -> Vec<HandError> {
     let place = format!("finger '{}'", spec.name);
     let links = spec.tips.iter().map(|name| find_link(model, &place, name));

@@ -1,4 +1,4 @@
-//! Names of a spec turned into indices of a model, everything checked on the way.
+//! Resolves the names of a spec to indices of a model and checks them.
 
 use nalgebra::{Point3, UnitVector3, Vector3};
 
@@ -91,7 +91,8 @@ pub(super) fn fingers(
     Ok(fingers)
 }
 
-/// No link moves with two fingers, once the links of fingers that close together are divided.
+/// Checks that no link moves with two fingers, after the links of fingers that close together are
+/// divided among them.
 pub(super) fn separate(model: &HandModel, fingers: &[Finger]) -> Result<(), HandError> {
     for (k, second) in fingers.iter().enumerate() {
         for first in &fingers[..k] {
@@ -212,8 +213,8 @@ pub(super) fn find_driven(model: &HandModel, place: &str, name: &str) -> Result<
         })
 }
 
-/// Links that closing moves, and bounds on the speed of their points, in all and by each of the
-/// closing joints.
+/// Links that closing moves, and bounds on the speed of their points: in total and per closing
+/// joint.
 pub(super) struct Motion {
     /// The links, parents first.
     pub(super) links: Vec<usize>,
@@ -227,7 +228,7 @@ impl Motion {
     /// A point of link L moves at most Σ_J |rate_J| · reach(J, L), reach being the length of
     /// the chain from the axis of J to the farthest point of L (1 for a sliding joint).
     pub(super) fn of(model: &HandModel, shapes: &[LinkShape], closing: &[(usize, f64)]) -> Self {
-        // Which closing joint moves a joint, and how fast.
+        // The closing joint that moves each joint, with its rate.
         let part_of = |joint: usize| {
             let (driven, factor) = match model.joints[joint].drive {
                 Drive::Fixed => return None,
@@ -245,7 +246,7 @@ impl Motion {
         for (link, shape) in shapes.iter().enumerate() {
             let mut reach = shape.reach();
             let mut parts = vec![0.0; closing.len()];
-            // A frame on the axis turns although no point of it moves, and so do its children.
+            // A frame on the axis rotates although its origin does not move, and its children move.
             let mut moves = false;
             for joint in model.path_to_root(link) {
                 if let Some((part, rate)) = part_of(joint) {

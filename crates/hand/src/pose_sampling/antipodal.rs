@@ -1,4 +1,4 @@
-//! Pairs of points that two jaws can press from opposite sides, and the poses about them.
+//! Antipodal pairs of surface points, and poses of a gripper at them.
 
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, UnitQuaternion, UnitVector3, Vector3};
 use rand::{Rng, RngExt};
@@ -13,27 +13,28 @@ use crate::collision::CollisionObject;
 use crate::hand::{Hand, Jaws};
 use shape::Support;
 
-/// Pairs tried for one pose.
+/// Number of pairs tried per pose.
 const TRIES: usize = 100;
-/// Approaches tried for one pair.
+/// Number of approach directions tried per pair.
 const TURNS: usize = 6;
-/// What the jaws are wider than the pair, metres: both tips start clear of the surface.
+/// Opening of the jaws beyond the distance of the pair, metres, so that both tips start clear of
+/// the surface.
 const SPARE: f64 = 2e-3;
-/// What is left between the surface and links that may not touch, metres.
+/// Clearance between the surface and links that must not touch, metres.
 const CLEARANCE: f64 = 6e-3;
-/// Points of the surface with which the hand is compared.
+/// Number of surface points with which the hand is compared.
 const POINTS: usize = 400;
-/// Moves of the middle of the jaws along the approach, metres, both ways.
+/// Largest displacement of the middle of the jaws along the approach, in both directions, metres.
 const SHIFT: f64 = 6e-3;
-/// Steps along a line, as a share of the object's radius, before the crossing is bisected.
+/// Step along a line, as a fraction of the object's radius, before the crossing is bisected.
 const STEP: f64 = 0.05;
 const BISECTIONS: usize = 20;
 
-/// A surface on which pairs are looked for.
+/// A surface on which antipodal pairs are sampled.
 pub(super) struct Pairs<'a> {
     body: Body<'a>,
     points: Vec<Point3<f64>>,
-    /// On their way from each pre-shape that poses are drawn from, the widest first.
+    /// The states of the jaws as they close from each sampled pre-shape, the widest first.
     jaws: Vec<Vec<Station<'a>>>,
     cone: f64,
     least_height: f64,
@@ -47,7 +48,7 @@ enum Body<'a> {
     Spherical(&'a Places<'a>),
 }
 
-/// The jaws somewhere on their way.
+/// One state of the closing jaws.
 struct Station<'a> {
     jaws: Jaws,
     /// Poses of all links, palm frame.
@@ -90,7 +91,7 @@ impl<'a> Pairs<'a> {
         }
     }
 
-    /// A pose whose jaws are about an antipodal pair, and which pre-shape's they are.
+    /// A pose with the jaws at an antipodal pair, and the index of the pre-shape.
     pub(super) fn draw<R: Rng + ?Sized>(
         &self,
         hand: &Hand,
@@ -104,7 +105,7 @@ impl<'a> Pairs<'a> {
             let Some((first, second)) = self.pair(widest, rng) else {
                 continue;
             };
-            // Where the tips will be when they are as far apart as the pair.
+            // The state in which the distance of the tips is that of the pair.
             let width = (first - second).norm();
             let wider = way.iter().rev().find(|s| s.jaws.opening >= width);
             let closed = wider.unwrap_or(open);
@@ -136,7 +137,7 @@ impl<'a> Pairs<'a> {
         })
     }
 
-    /// Two points not farther apart than `widest`, the line between them in both friction cones.
+    /// Two points at most `widest` apart whose connecting line is in both friction cones.
     fn pair<R: Rng + ?Sized>(
         &self,
         widest: f64,
@@ -168,8 +169,9 @@ impl<'a> Pairs<'a> {
         (opposite.dot(&-way) >= self.cone.cos()).then_some((first, second))
     }
 
-    /// The pose that brings the jaws about a pair, turned by `roll` about the line between its points
-    /// and moved by `shift` along the approach; none from below or where the palm would meet the surface.
+    /// The pose with the jaws at a pair, rotated by `roll` about the line between its points and
+    /// moved by `shift` along the approach; `None` from below or if the palm would touch the
+    /// surface.
     fn about(
         &self,
         hand: &Hand,
@@ -207,11 +209,11 @@ impl<'a> Pairs<'a> {
     }
 }
 
-/// The jaws of a pre-shape on their way, with the links that must stay clear.
+/// The states of the closing jaws of a pre-shape, with the links that must stay clear.
 fn stations(hand: &Hand, preshape: usize) -> Vec<Station<'_>> {
     let jaws = hand.jaws(preshape).unwrap_or_default();
     let station = |(k, jaws): (usize, Jaws)| {
-        // Open tips are clear of the surface; closed ones touch it.
+        // Open tips are clear of the surface; closed tips touch it.
         let of_tips = (k == 0).then_some(0.0);
         let obstacles = Obstacles::new(hand, &jaws.joints, CLEARANCE, of_tips)?;
         let links = hand.model().root_from_links(&jaws.joints).ok()?;
@@ -231,7 +233,7 @@ fn uniform_direction<R: Rng + ?Sized>(rng: &mut R) -> Direction {
     Direction::new_normalize(Vector3::new(ring * cos, ring * sin, z))
 }
 
-/// Where a line that starts on the surface, or inside it, first leaves it within `longest`.
+/// The first exit, within `longest`, of a line that starts on the surface or inside it.
 fn exit(
     field: &RadialField,
     radius: f64,

@@ -1,11 +1,11 @@
-//! Whether a hand at a pose is clear of points of a surface: a quick look before anything is closed.
+//! A fast test, before closing, whether a hand at a pose is clear of points of a surface.
 
 use nalgebra::{Isometry3, Point3, Vector3};
 
 use crate::collision::LinkShape;
 use crate::hand::Hand;
 
-/// Links with the fingers in one state, and boxes about them, in the palm frame.
+/// Links with the fingers in one state, and bounding boxes, in the palm frame.
 pub(super) struct Obstacles<'a> {
     links: Vec<Placed<'a>>,
 }
@@ -19,7 +19,7 @@ struct Placed<'a> {
 }
 
 impl<'a> Obstacles<'a> {
-    /// All links with their clearances in metres: one for tips, none of which takes part without it, and
+    /// All links with their clearances in metres: one for tips, which are ignored without it, and
     /// one for the others.
     pub(super) fn new(
         hand: &'a Hand,

@@ -125,7 +125,7 @@ impl<'a> Places<'a> {
         crossings.get(which).map_or(0.0, |c| c.along)
     }
 
-    /// Where a line that starts on the surface, or inside it, first leaves it within `longest`.
+    /// The first exit, within `longest`, of a line that starts on the surface or inside it.
     pub(super) fn exit(
         &self,
         start: &Point3<f64>,

@@ -1,9 +1,9 @@
-//! The best grasp near wanted contacts that a hand can really make.
+//! The best grasp near wanted contacts that a hand can execute.
 //!
-//! Where no hand brings its tips to the contacts (a valley narrower than a tip, a span wider
-//! than the hand), the contacts that it does make are a grasp too, and a worse one. From there
-//! the quality is climbed among the contacts that the hand makes: every trial asks for contacts a
-//! little aside, moves the hand after them, closes it by the rules and measures what it holds.
+//! Where no hand pose brings the tips to the contacts (a valley narrower than a tip, a span wider
+//! than the hand), the contacts that the closed hand makes are a grasp of lower quality. The search
+//! improves the quality from there. Each trial displaces the wanted contacts a little, moves the
+//! hand towards them, closes it by the closing rules and measures the quality of its contacts.
 
 use grasp::{Contact, Convention, GraspModel, QualityError, Workspace, epsilon};
 use nalgebra::{DVector, Point3};
@@ -17,16 +17,17 @@ use super::{ReachParams, Reached, Reacher};
 use crate::contact::even_axes;
 use crate::tip_model::TipModel;
 
-/// How a hand's grasp is improved.
+/// Settings of the search for a better grasp of a hand.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImproveParams {
     /// Number of closings tried.
     pub trials: usize,
-    /// First move of the contacts, metres; it grows with success and shrinks without.
+    /// Length of the first displacement of the contacts, metres. It grows after a success and
+    /// shrinks after a failure.
     pub spread: f64,
     /// How quality is measured.
     pub convention: Convention,
-    /// The point about which torques are taken, object frame, metres.
+    /// The point about which torques are taken, centred frame, metres.
     pub centre: Point3<f64>,
     /// What the contacts transmit, apart from friction.
     pub tips: TipModel,
@@ -35,15 +36,15 @@ pub struct ImproveParams {
 /// A grasp that the hand makes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Improvement {
-    /// The hand and the contacts it makes; the errors are distances from the wanted contacts.
+    /// The hand and its contacts; the errors are distances from the wanted contacts.
     pub reached: Reached,
-    /// Quality of the contacts that the hand makes.
+    /// Quality of the hand's contacts.
     pub quality: f64,
-    /// The same before anything was improved.
+    /// The quality before the search.
     pub start_quality: f64,
 }
 
-/// Where the search stands.
+/// The state of the search.
 struct Standing {
     x: DVector<f64>,
     hand: Reached,
@@ -51,10 +52,16 @@ struct Standing {
 }
 
 impl Reacher<'_> {
-    /// Climbs the quality from a hand that is near the wanted contacts, among hands that keep
-    /// every rule; never below the start. The same generator state gives the same result.
+    /// Improves the quality from a hand that is near the wanted contacts, among hands that satisfy
+    /// every rule. The result is never worse than the start. The same generator state gives the
+    /// same result.
     ///
-    /// Errors: a convention that cannot be used. Cost: about two milliseconds a trial.
+    ///
+    /// Cost: about two milliseconds per trial.
+    ///
+    /// # Errors
+    ///
+    /// The convention cannot be used.
     pub fn improve<R: Rng + ?Sized>(
         &self,
         wanted: &[Contact],
@@ -85,7 +92,7 @@ impl Reacher<'_> {
         let mut way: Option<Vec<Direction>> = None;
         for trial in 0..params.trials {
             let aims = match way.take() {
-                // What has just helped may help again.
+                // Repeat a displacement that raised the quality.
                 Some(ahead) => ahead,
                 None if trial < 3 => {
                     towards(&best.hand.directions, &targets, 0.5_f64.powi(trial as i32))
@@ -111,7 +118,7 @@ impl Reacher<'_> {
         })
     }
 
-    /// Moves the hand after contacts at `aims` and closes it; none where a rule is broken.
+    /// Moves the hand towards contacts at `aims` and closes it; `None` if a rule is broken.
     fn trial(
         &self,
         from: &Standing,
@@ -171,7 +178,7 @@ impl Reacher<'_> {
     }
 }
 
-/// From contacts a share of the way to others.
+/// Linear interpolation between two sets of contacts.
 fn towards(from: &[Direction], to: &[Direction], share: f64) -> Vec<Direction> {
     let pairs = from.iter().zip(to);
     pairs
@@ -179,7 +186,7 @@ fn towards(from: &[Direction], to: &[Direction], share: f64) -> Vec<Direction> {
         .collect()
 }
 
-/// As far beyond the second contacts as they are beyond the first.
+/// Extrapolation: the second contacts plus their difference from the first.
 fn ahead(from: &[Direction], to: &[Direction]) -> Vec<Direction> {
     let pairs = from.iter().zip(to);
     pairs.map(|(p, q)| retract(q, &-log(q, p))).collect()

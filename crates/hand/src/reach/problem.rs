@@ -1,4 +1,4 @@
-//! The least-squares problem of bringing tips to contacts, and the closing that settles it.
+//! The least-squares problem of bringing tips to contacts, and the closing that follows it.
 
 use grasp::Contact;
 use nalgebra::{DVector, Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
@@ -10,35 +10,36 @@ use crate::contact::tip_contact;
 use crate::hand::{Finger, Hand};
 use crate::least_squares::{Stopping, minimise};
 
-/// Length by which a turned tip counts as a misplaced one, metres a radian: first to find
-/// the right side of the tip, then hardly, so that it does not pull the tip off the contact.
+/// Weight of orientation errors against position errors, metres per radian. The first pass finds
+/// the right side of the tip; the second has a small weight, so that the orientation does not
+/// displace the tip from the contact.
 const FACING_WEIGHTS: (f64, f64) = (4e-3, 2e-4);
-/// The balls that stand in for the object at its contacts are no larger than this, metres.
+/// Largest radius of the balls that approximate the object at its contacts, metres.
 const MAX_DEPTH: f64 = 0.02;
-/// Share of a missing clearance that counts.
+/// Weight of a missing clearance.
 const CLEARANCE_WEIGHT: f64 = 0.5;
-/// Clearances are wanted with this much to spare, metres.
+/// Margin added to every clearance, metres.
 const CLEARANCE_MARGIN: f64 = 1.5e-3;
-/// Tips farther than this from their contacts (root sum of squares, metres) after the first
-/// search are given up.
+/// A start is abandoned if its tips are farther than this from their contacts after the first
+/// search (root sum of squares, metres).
 const HOPELESS: f64 = 0.03;
 
-/// A hand and an object, prepared for reaching any contacts.
+/// A hand and an object, prepared for searches at any contacts.
 #[derive(Debug, Clone)]
 pub(super) struct Problem<'a> {
     pub(super) object: &'a CollisionObject<'a>,
     pub(super) hand: &'a Hand,
-    /// Where each finger's tip faces, in the frame of its first tip link.
+    /// The direction that each finger's tip faces, in the frame of its first tip link.
     pub(super) pads: Vec<Vector3<f64>>,
-    /// Links with geometry that are no tips.
+    /// Links with geometry that are not tips.
     others: Vec<usize>,
-    /// How far the surface of each tip is from the middle of its link that way, metres.
+    /// Distance from the middle of each tip link to its surface in that direction, metres.
     pub(super) pad_depths: Vec<f64>,
     /// Radius of the balls inside the object that tips are to touch, metres.
     depth: f64,
 }
 
-/// Contacts with the finger that is to hold each.
+/// Contacts with the finger assigned to each.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Task<'a> {
     pub(super) wanted: &'a [Contact],
@@ -57,7 +58,7 @@ pub(super) fn state(object_from_palm: &Isometry3<f64>, joints: &[f64]) -> DVecto
     DVector::from_iterator(6 + joints.len(), head.chain(joints.iter()).copied())
 }
 
-/// The palm's pose in such a vector.
+/// The pose of the palm in such a vector.
 fn pose(x: &DVector<f64>) -> Isometry3<f64> {
     let turn = Vector3::new(x[3], x[4], x[5]);
     Isometry3::from_parts(
@@ -84,7 +85,7 @@ fn pad_direction(hand: &Hand, finger: &Finger) -> Vector3<f64> {
     before[link].inverse_transform_vector(&moved.try_normalize(0.0).unwrap_or_default())
 }
 
-/// Distance from the middle of a tip to its surface along its pad.
+/// Distance from the middle of a tip to its surface in the direction that its pad faces.
 fn pad_depth(hand: &Hand, finger: &Finger, pad: &Vector3<f64>) -> f64 {
     let shape = &hand.shapes[finger.tip_links[0]];
     let far = 10.0 * shape.radius;
@@ -133,7 +134,8 @@ impl<'a> Problem<'a> {
             (tip - wanted[contact].position).norm_squared()
         };
         let mut order: Vec<usize> = (0..wanted.len()).collect();
-        // Exchanging two at a time until none gains is exact for three, good for more.
+        // Exchanges of two until none improves: exact for three contacts, a good approximation for
+        // more.
         loop {
             let mut gained = false;
             for a in 0..order.len() {
@@ -151,7 +153,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Least squares without, then with clearances; returns the misfit of the tips in metres.
+    /// Least squares without clearances, then with them; returns the misfit of the tips in metres.
     pub(super) fn solve(&self, x: &mut DVector<f64>, task: &Task<'_>) -> f64 {
         self.minimise(x, |x, _| {
             DVector::from_vec(self.tips(&self.links(x), task, FACING_WEIGHTS.0))
@@ -196,10 +198,10 @@ impl<'a> Problem<'a> {
         positions.map(|v| v * v).sum::<f64>().sqrt()
     }
 
-    /// Six residuals a contact: how far the tip is from touching, at the contact, a ball
-    /// that lies inside the object there (its centre is `depth` below the contact, so a
-    /// tip that is tilted is off by as much as one that is moved), and how the pad is
-    /// turned from the inward normal.
+    /// Six residuals per contact. Three are the distance of the tip from touching, at the contact,
+    /// a ball inside the object; the centre of the ball is `depth` below the contact, so that a
+    /// tilt of the tip counts like a displacement. Three are the rotation of the pad away from the
+    /// inward normal.
     fn tips(&self, poses: &[Isometry3<f64>], task: &Task<'_>, facing_weight: f64) -> Vec<f64> {
         let mut all = vec![0.0; 6 * task.wanted.len()];
         for (k, (contact, &finger)) in task.wanted.iter().zip(task.fingers).enumerate() {
@@ -221,7 +223,7 @@ impl<'a> Problem<'a> {
         all
     }
 
-    /// What each link that is no tip lacks of its clearance.
+    /// The missing clearance of each link that is not a tip.
     fn push_clearances(
         &self,
         poses: &[Isometry3<f64>],
@@ -247,7 +249,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// What each link lacks of its height above the support.
+    /// The missing height above the support of each link.
     fn push_heights(&self, poses: &[Isometry3<f64>], task: &Task<'_>, all: &mut Vec<f64>) {
         let rules = &task.params.rules;
         let Some(support) = &rules.support else {
@@ -260,7 +262,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Opens the fingers, closes them by the rules and measures where they touch.
+    /// Opens the fingers, closes them by the closing rules and measures their contacts.
     pub(super) fn close(
         &self,
         x: &DVector<f64>,

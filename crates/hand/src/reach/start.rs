@@ -1,4 +1,4 @@
-//! Starts of the search: hands whose tips lie as the contacts do, before anything is moved.
+//! Starts of the search: hands whose tips have about the same mutual distances as the contacts.
 
 use std::f64::consts::TAU;
 
@@ -11,24 +11,24 @@ use super::problem::{Problem, state};
 use crate::alignment::{DEPTH, align, contact_points};
 use shape::Support;
 
-/// Half-closed hands among which a start is chosen.
+/// Number of half-closed hands among which a start is chosen.
 const SHAPES: usize = 24;
 
-/// A pose and joints near the contacts, and which finger is to hold each.
+/// A pose and joints near the contacts, and the finger assigned to each contact.
 pub(super) struct Start {
     pub(super) x: DVector<f64>,
     pub(super) fingers: Vec<usize>,
 }
 
-/// Two points for every finger: the middle of its pad and one ahead of it, palm frame.
+/// Two points per finger in the palm frame: the middle of its pad and a point in front of it.
 struct Fist {
     joints: Vec<f64>,
     points: Vec<[Point3<f64>; 2]>,
 }
 
 impl Problem<'_> {
-    /// Of some random half-closed hands and all ways to give fingers to contacts, the one whose
-    /// pads can be moved nearest to the contacts, so moved.
+    /// The best start among random half-closed hands and all assignments of fingers to contacts:
+    /// the one whose pads a rigid motion brings nearest to the contacts, after that motion.
     pub(super) fn aligned_start<R: Rng + ?Sized>(
         &self,
         wanted: &[Contact],
@@ -61,7 +61,8 @@ impl Problem<'_> {
         }
     }
 
-    /// A hand that approaches the contacts across their plane or from anywhere, half closed.
+    /// A half-closed hand that approaches the contacts along the normal of their plane or from a
+    /// random direction.
     pub(super) fn approaching_start<R: Rng + ?Sized>(
         &self,
         wanted: &[Contact],
@@ -112,7 +113,7 @@ impl Problem<'_> {
         Start { x, fingers }
     }
 
-    /// A hand in a random pre-shape or spread, each finger partly closed.
+    /// A hand in a random pre-shape or with random joints, each finger partly closed.
     fn fist<R: Rng + ?Sized>(&self, rng: &mut R) -> Fist {
         let hand = self.hand;
         let model = &hand.model;
@@ -147,7 +148,7 @@ impl Problem<'_> {
         Fist { joints, points }
     }
 
-    /// A hand that is somewhere already; each contact to the finger that is nearest.
+    /// A start from a given pose; each contact is assigned to the nearest finger.
     pub(super) fn known_start(&self, hand: &HandState, wanted: &[Contact]) -> Start {
         let mut joints = hand.joints.clone();
         joints.resize(self.hand.model.driven_count(), 0.0);
@@ -158,8 +159,8 @@ impl Problem<'_> {
     }
 }
 
-/// How differently the points of the fingers and of the contacts lie, whatever their motion:
-/// Σ over pairs of points (difference of their distances)².
+/// A misfit of the points of the fingers and of the contacts that no rigid motion changes: Σ over
+/// pairs of points (difference of their distances)².
 fn misfit_of_distances(targets: &[[Point3<f64>; 2]], fist: &Fist, order: &[usize]) -> f64 {
     let mut sum = 0.0;
     for (i, a) in targets.iter().enumerate() {
@@ -173,7 +174,8 @@ fn misfit_of_distances(targets: &[[Point3<f64>; 2]], fist: &Fist, order: &[usize
     sum
 }
 
-/// Ways to give fingers to contacts: all of them up to four, else turns of the given order.
+/// Assignments of fingers to contacts: all permutations for up to four contacts, otherwise the
+/// cyclic ones.
 pub(super) fn orders(count: usize) -> Vec<Vec<usize>> {
     if count > 4 {
         let turned = |by: usize| (0..count).map(|k| (k + by) % count).collect();

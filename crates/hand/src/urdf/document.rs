@@ -1,15 +1,15 @@
-//! What a URDF says of links and joints, in the form that urdf-rs reads.
+//! The links and joints of a URDF, in the form that urdf-rs reads.
 //!
-//! urdf-rs asks for elements that a hand does not need, such as the velocity of a limit, and stops at
-//! files that other readers accept. So the text is written again with exactly what a hand needs, each
-//! entry checked and named where it is wrong, and urdf-rs reads that.
+//! urdf-rs requires elements that a hand does not need, such as the velocity of a limit, and
+//! refuses files that other readers accept. So the text is rewritten with only what a hand needs.
+//! Every entry is checked, and a wrong one is named in the error. urdf-rs reads the rewritten text.
 
 use std::fmt::Write;
 
 use super::UrdfError;
 use super::xml::{self, Element};
 
-/// Reads the elements of a URDF; text that is something else is named as what it is.
+/// Reads the elements of a URDF. For a text of another kind the error names the kind.
 pub(super) fn read(text: &str) -> Result<urdf_rs::Robot, UrdfError> {
     if text.starts_with("version https://git-lfs") {
         return Err(UrdfError::Foreign {
@@ -35,7 +35,7 @@ pub(super) fn read(text: &str) -> Result<urdf_rs::Robot, UrdfError> {
     urdf_rs::read_from_string(&clean.text).map_err(|e| UrdfError::Parse(e.to_string()))
 }
 
-/// The root element tells what a file is.
+/// Checks by the root element that the file is a URDF.
 fn check_root(root: &Element) -> Result<(), UrdfError> {
     let (found, advice) = match root.name.to_lowercase().as_str() {
         "robot" => return Ok(()),
@@ -72,7 +72,8 @@ fn unexpanded() -> UrdfError {
     }
 }
 
-/// Expanded files may still declare the xacro namespace; they hold no element or expression of it.
+/// Expanded files may still declare the xacro namespace, but they contain no element or expression
+/// of it.
 fn check_expanded(root: &Element) -> Result<(), UrdfError> {
     let expression = |e: &Element| {
         let mut values = e.attributes.iter().map(|(_, value)| value);
@@ -82,7 +83,7 @@ fn check_expanded(root: &Element) -> Result<(), UrdfError> {
         test(e) || e.children.iter().any(|c| any(c, test))
     }
     let macros = |e: &Element| e.name.starts_with("xacro:");
-    // Elements of simulators may hold such expressions of their own.
+    // Elements of simulators may contain such expressions too.
     let ours = |e: &&Element| ["link", "joint"].contains(&e.name.as_str());
     if root.children.iter().any(macros)
         || root
@@ -96,7 +97,7 @@ fn check_expanded(root: &Element) -> Result<(), UrdfError> {
     Ok(())
 }
 
-/// The text for urdf-rs.
+/// Writes the text for urdf-rs.
 #[derive(Default)]
 struct Clean {
     text: String,
@@ -159,7 +160,7 @@ impl Clean {
             .and_then(|g| g.children.first())
             .ok_or_else(|| UrdfError::EmptyGeometry { link: link.into() })?;
         let plain = geometry.name.rsplit(':').next().unwrap_or_default();
-        // What each form must have, and how many numbers that is.
+        // The attribute that each form must have, and its number of entries.
         let needed: &[(&'static str, usize)] = match plain {
             "box" => &[("size", 3)],
             "cylinder" | "capsule" => &[("radius", 1), ("length", 1)],
@@ -223,8 +224,8 @@ impl Clean {
         Ok(())
     }
 
-    /// Effort and velocity play no part; a bound that is left out is 0, as the format says. A joint that
-    /// follows another moves as that one does and needs no limits.
+    /// Effort and velocity are not used. A missing bound is 0, as the format defines. A mimic joint
+    /// needs no limits.
     fn limit(&mut self, joint: &str, kind: &str, element: &Element) -> Result<(), UrdfError> {
         let bounds = match element.child("limit") {
             Some(limit) => [numbers(limit, "lower", 1)?, numbers(limit, "upper", 1)?],
@@ -294,7 +295,7 @@ fn missing(item: String, what: &'static str) -> UrdfError {
     UrdfError::Missing { item, what }
 }
 
-/// So many numbers in an attribute, written again; `None` where it is absent.
+/// The given count of numbers in an attribute, rewritten; `None` where the attribute is absent.
 fn numbers(
     element: &Element,
     what: &'static str,
@@ -312,7 +313,7 @@ fn numbers(
             word: word.chars().take(40).collect(),
         })?;
         let gap = if count > 0 { " " } else { "" };
-        // Writing to a string does not fail.
+        // Writing to a string cannot fail.
         let _ = write!(clean, "{gap}{value:?}");
         count += 1;
     }

@@ -2,10 +2,10 @@
 
 use std::borrow::Cow;
 
-/// The text of a URDF given as bytes: UTF-8, UTF-16 with a mark of the byte order, or else Latin-1.
+/// The text of a URDF given as bytes: UTF-8, UTF-16 with a byte order mark, or otherwise Latin-1.
 ///
-/// Old files hold Latin-1 letters in comments. The names that matter are the ones that the TOML repeats,
-/// so a letter taken for another is seen as a name that does not exist. Linear in the bytes.
+/// Old files contain Latin-1 letters in comments. Names that are used are repeated in the TOML, so
+/// a wrongly decoded letter leads to the error that the name does not exist. Linear in the bytes.
 ///
 /// ```
 /// assert_eq!(hand::urdf_text(b"<!-- Gr\xf6\xdfe -->"), "<!-- Größe -->");

@@ -1,4 +1,4 @@
-//! Names, parents, limits and mimics of a read URDF put in order.
+//! The kinematic tree of a URDF: links in order, limits and mimic joints.
 
 use std::collections::HashMap;
 
@@ -8,13 +8,12 @@ use urdf_rs::JointType;
 use super::{UrdfError, isometry, number, vector};
 use crate::model::{Drive, HandModel, Joint, JointKind, Link, LinkGeometry};
 
-/// How far a joint without limits goes each way: one turn (radians), or one metre, is all that a hand
-/// asks for.
+/// Range of a joint without limits, in both directions: one turn (radians) or one metre.
 pub(crate) const UNLIMITED: [(JointKind, f64); 2] = [
     (JointKind::Revolute, std::f64::consts::TAU),
     (JointKind::Prismatic, 1.0),
 ];
-/// Bounds beyond this mean that there are none: writers put 1e16 or infinity there.
+/// Larger bounds mean that there is no limit: some files have 1e16 or infinity.
 const NO_BOUND: f64 = 1e3;
 
 /// Builds the model from a URDF and the geometry of its links (in the file's order).
@@ -74,7 +73,7 @@ fn unique_links(robot: &urdf_rs::Robot) -> Result<HashMap<&str, usize>, UrdfErro
     Ok(link_of)
 }
 
-/// The joint that carries each link.
+/// The parent joint of each link.
 fn parents(
     robot: &urdf_rs::Robot,
     link_of: &HashMap<&str, usize>,
@@ -101,7 +100,7 @@ fn parents(
     Ok(parent)
 }
 
-/// Links from the root outwards; every link must be reached from one root.
+/// The links, parents first. All must descend from one root.
 fn parents_first(
     robot: &urdf_rs::Robot,
     link_of: &HashMap<&str, usize>,
@@ -132,7 +131,7 @@ fn parents_first(
     Ok(order)
 }
 
-/// Where each joint's value comes from; mimic chains are followed to a driven joint.
+/// The source of each joint's value; chains of mimic joints are resolved to a driven joint.
 fn drives(robot: &urdf_rs::Robot) -> Result<Vec<Drive>, UrdfError> {
     let mut index_of = HashMap::new();
     for (index, joint) in robot.joints.iter().enumerate() {
@@ -246,7 +245,7 @@ fn unlimited(kind: JointKind) -> (f64, f64) {
     bound.map_or((0.0, 0.0), |(_, far)| (-far, *far))
 }
 
-/// Limits as given; bounds that mean none become those of a joint without limits.
+/// The limits of a joint. Bounds that mean no limit become those of a joint without limits.
 fn limits(joint: &urdf_rs::Joint, kind: JointKind) -> Result<(f64, f64), UrdfError> {
     let far = unlimited(kind);
     let (lower, upper) = (joint.limit.lower, joint.limit.upper);

@@ -1,8 +1,8 @@
-//! The elements of an XML text, for files that are looked through before urdf-rs reads them.
+//! The elements of an XML text, for checks before urdf-rs reads it.
 //!
-//! Size, depth and number of elements are limited, and document types (and so entities) are refused.
-//! Names keep their prefixes, and namespaces need not be declared: descriptions of robots are full of
-//! prefixes that nothing declares.
+//! Size, depth and number of elements are limited, and document types (and so entities) are
+//! refused. Names keep their prefixes, and namespaces need not be declared: many robot descriptions
+//! use undeclared prefixes.
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -21,7 +21,7 @@ pub const MAX_URDF_ELEMENTS: usize = 50_000;
 pub(super) struct Element {
     /// Its name with its prefix.
     pub(super) name: String,
-    /// Where its tag begins.
+    /// Position of its tag in the text.
     pub(super) byte: usize,
     /// Names and values in the order of the text.
     pub(super) attributes: Vec<(String, String)>,
@@ -51,7 +51,7 @@ impl Element {
         self.children.iter().filter(move |c| c.name == name)
     }
 
-    /// An attribute, or the text of a child of that name: some writers use elements.
+    /// An attribute, or the text of a child of that name: some files use elements instead.
     pub(super) fn value(&self, name: &str) -> Option<&str> {
         self.attribute(name)
             .or_else(|| self.child(name).map(|c| c.text.as_str()))
@@ -60,7 +60,7 @@ impl Element {
 
 /// The root element of a text.
 ///
-/// One pass over the bytes. Errors name the byte where the text stops being acceptable.
+/// One pass over the bytes. Errors name the line and column at which the text is refused.
 pub(super) fn root(text: &str) -> Result<Element, UrdfError> {
     if text.len() > MAX_URDF_BYTES {
         return Err(UrdfError::TooLarge {
@@ -68,7 +68,7 @@ pub(super) fn root(text: &str) -> Result<Element, UrdfError> {
             limit: MAX_URDF_BYTES,
         });
     }
-    // A mark of the byte order may stand before the text.
+    // A byte order mark may precede the text.
     let body = text.trim_start_matches('\u{feff}');
     let skipped = text.len() - body.len();
     let place = |position: u64| skipped + usize::try_from(position).unwrap_or(text.len());
@@ -106,7 +106,7 @@ pub(super) fn root(text: &str) -> Result<Element, UrdfError> {
 
 const OUTSIDE: &str = "text outside the root element";
 
-/// The elements that are open, and the root once it is closed.
+/// The open elements, and the root element after it is closed.
 #[derive(Default)]
 struct Building {
     open: Vec<Element>,
@@ -173,7 +173,7 @@ fn not_xml(byte: usize, what: impl Into<String>) -> UrdfError {
     }
 }
 
-/// Name and attributes of an opening tag. Entities that XML does not define stay as they are.
+/// Name and attributes of an opening tag. Entities that XML does not predefine are kept unchanged.
 fn element(tag: &BytesStart<'_>, byte: usize) -> Result<Element, UrdfError> {
     let word = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     let name = word(tag.name().as_ref());
