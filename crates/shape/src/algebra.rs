@@ -8,7 +8,7 @@ use crate::radial::RadialShape;
 /// Why weights do not combine shapes inside M^rad.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SpaceError {
-    /// One weight a shape is needed, and at least one shape.
+    /// One weight per shape is needed, and at least one shape.
     #[error("{weights} weights for {shapes} shapes")]
     Counts {
         /// Number of weights.

@@ -40,7 +40,7 @@ pub enum SurfaceRef<'a> {
 }
 
 impl AnyShape {
-    /// L.
+    /// The degree L of the coefficients.
     pub fn degree(&self) -> usize {
         match self {
             Self::Radial(shape) => shape.degree(),

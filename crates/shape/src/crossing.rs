@@ -1,4 +1,5 @@
-//! A cheap test whether a surface cuts or folds itself: no proof, but enough to steer a fit.
+//! A fast test whether a surface intersects itself or folds. It is not a proof; a fit uses it to
+//! choose λ.
 
 use nalgebra::{Point3, Vector3};
 use sph::Coefficients;
@@ -9,7 +10,7 @@ use crate::normals::normals;
 
 /// Rings of the mesh per degree.
 const RINGS: f64 = 2.4;
-/// An area element below this share of the largest one is taken for a fold.
+/// An area element below this share of the largest one counts as a fold.
 const FLAT: f64 = 3e-3;
 
 /// A place where a fine mesh of the surface cuts itself, or where the area element nearly vanishes.

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 /// Coordinates and how much of the squared distances they explain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Embedding {
-    /// One row an object, `dimensions` numbers each, in the unit of the distances.
+    /// One row per object, `dimensions` numbers each, in the unit of the distances.
     pub coordinates: Vec<Vec<f64>>,
     /// All eigenvalues of the doubly centred matrix, largest first.
     pub eigenvalues: Vec<f64>,

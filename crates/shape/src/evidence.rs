@@ -1,20 +1,21 @@
-//! What a cloud says of a surface at the scale of a fingertip.
+//! Evidence of a cloud for a surface at the scale of a fingertip.
 //!
-//! A fitted surface is smooth; the object under it may have an edge. How far the data is from the surface
-//! at a contact, and how much the data's own normals differ from the surface's within a pad around it,
-//! are measured on the points alone, whatever kind of surface was fitted.
+//! A fitted surface is smooth even where the object has an edge. Two numbers are measured on the
+//! points alone, for any kind of surface: the distance of the data from the surface at a contact,
+//! and the angle between the normals of the data within a pad around it and the normal of the
+//! surface.
 
 use nalgebra::{Matrix3, Point3, UnitVector3, Vector3};
 
-/// Radius of a fingertip's pad, metres, where no hand says otherwise.
+/// Radius of a fingertip's pad without a hand, metres.
 pub const PAD_RADIUS: f64 = 5e-3;
 
-/// Points that determine a plane well.
+/// Number of points that determine a plane well.
 const ENOUGH: usize = 8;
-/// Points of a pad whose normals are looked at.
+/// Largest number of points of a pad at which normals are estimated.
 const MOST_NORMALS: usize = 200;
 
-/// What a cloud says of the surface near one contact.
+/// The evidence of a cloud for the surface near one contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
     /// Distance of the contact from the plane that fits the points around it best, metres; of an unseen
@@ -23,7 +24,7 @@ pub struct Evidence {
     /// The largest angle between the contact's normal and the data's normals within the pad, radians, up
     /// to π/2; π for an unseen contact, where any normal is possible.
     pub normal_spread: f64,
-    /// Whether the pad holds enough points to tell.
+    /// Whether the pad has enough points.
     pub seen: bool,
 }
 

@@ -40,25 +40,26 @@ pub const MAX_UNOBSERVED: f64 = 0.4;
 
 /// The λ of the marginal likelihood times this.
 ///
-/// The likelihood takes edges and steps, which no degree of 50 can follow, for white noise and smooths
-/// a little too much. Fitted to one half, the error on the other is least for a factor of 0.05 to 0.5
-/// on scans with hard edges and of 1 to 3 on smooth or noisy ones, and it is flat: a factor of 0.5 costs
-/// at most 1 % over the best one on 28 scans, clean and noisy (3 % on a smooth apple), and beats plain
-/// least squares in 83 of 84 halves of the 14 objects of the tests, where a factor of 1 does in 79.
-/// Against the true surface of modelled objects, which had no part in the choice, 0.5 is up to 12 % above
-/// the best, 0.3 4 to 22 %, 1 up to 3 % (two nearly round ones 41 to 53, 59 to 73 and 21 to 29 %).
+/// The likelihood treats edges and steps, which degree 50 cannot represent, as white noise and
+/// smooths a little too much. Fitted to one half, the error on the other is least for a factor of
+/// 0.05 to 0.5 on scans with hard edges and of 1 to 3 on smooth or noisy ones, and it is flat: a
+/// factor of 0.5 costs at most 1 % over the best one on 28 scans, clean and noisy (3 % on a smooth
+/// apple), and beats plain least squares in 83 of 84 halves of the 14 objects of the tests, where a
+/// factor of 1 does in 79. Against the true surface of modelled objects, which had no part in the
+/// choice, 0.5 is up to 12 % above the best, 0.3 4 to 22 %, 1 up to 3 % (two nearly round ones 41
+/// to 53, 59 to 73 and 21 to 29 %).
 const LIKELIHOOD_FACTOR: f64 = 0.5;
 /// Fewer points than coefficients resolve degrees up to about this times √N.
 const RESOLVED: f64 = 2.0 / 3.0;
 
-/// A chosen λ is raised until the surface stays below this many times the largest radius seen,
+/// A chosen λ is raised until the surface stays below this many times the largest observed radius.
 const MOST_OVERSHOOT: f64 = 1.25;
-/// and above this part of the least.
+/// A chosen λ is raised until the surface stays above this part of the least observed radius.
 const LEAST_UNDERSHOOT: f64 = 0.25;
-/// By how much, and how often.
+/// The factor by which λ is raised, and the largest number of times.
 const RAISE_FACTOR: f64 = 10.0;
 const MAX_RAISES: usize = 6;
-/// Fits of a cloud with outliers; the last one is kept as it is.
+/// Largest number of fits of a cloud with outliers.
 const ROUNDS: usize = 4;
 /// Outliers with less than this share of the squared residuals do not move the surface: no
 /// further fit. Normal noise has far less.
@@ -70,7 +71,7 @@ pub enum FitError {
     /// The regression failed.
     #[error(transparent)]
     Regression(#[from] RegressionError),
-    /// The fitted function is no radius.
+    /// The fitted function is not a positive radius.
     #[error(transparent)]
     Radial(#[from] RadialError),
     /// No radius over the directions can describe the cloud.
@@ -86,7 +87,7 @@ pub enum FitError {
         outer = worst.outer,
     )]
     NotStarShaped {
-        /// The measure, with every direction in question.
+        /// The measure, with all directions concerned.
         visibility: Box<Visibility>,
         /// The limit of [`Visibility::multiple`] that it exceeds.
         limit: f64,
@@ -108,7 +109,7 @@ pub enum FitError {
     OpenContainer {
         /// Its opening.
         opening: Opening,
-        /// What tells it from a solid seen from one side.
+        /// The evidence against a solid seen from one side.
         container: OpenContainer,
     },
     /// Most of the surface was not seen.
@@ -121,7 +122,7 @@ pub enum FitError {
         /// Share of the directions without a point.
         unobserved: f64,
     },
-    /// The surface leaves the data by far, and no penalty tried keeps it close.
+    /// The surface deviates far from the data under every penalty tried.
     #[error(
         "the surface runs from {:.4} to {:.4} m where the data run from {:.4} to {:.4} m; a lower degree or a more complete scan may help",
         reached.0, reached.1, seen.0, seen.1,
@@ -138,7 +139,7 @@ pub enum FitError {
         /// The time σ that was given.
         sigma: f64,
     },
-    /// Residuals were asked for against another cloud.
+    /// The cloud given for the residuals is not the fitted one.
     #[error("the cloud is not the one that was fitted")]
     OtherCloud,
     /// Too few points remain.
@@ -146,7 +147,7 @@ pub enum FitError {
     Cloud(#[from] CloudError),
 }
 
-/// A fitted surface and how well it fits.
+/// A fitted surface and its residuals.
 #[derive(Clone, Debug)]
 pub struct Fit {
     /// The surface, in the centred frame.
@@ -171,10 +172,15 @@ impl Fit {
     /// The surface after heat has flowed on the sphere for a time σ, β_{lm} e^{−l(l+1)σ}: the weighted
     /// harmonics of the paper's reference 13, which damp the ringing at edges.
     ///
-    /// Details narrower than about √σ radians go. Residuals are those of the smoothed surface, which is
-    /// proved anew; λ and the condition are those of the fit. `cloud` is the one that was fitted.
+    /// Details narrower than about √σ radians vanish. Residuals are those of the smoothed surface,
+    /// which is certified again; λ and the condition number are those of the fit. `cloud` is the
+    /// fitted cloud.
     ///
-    /// Errors: σ negative or no number; another cloud; no proof that the radius stays positive.
+    ///
+    /// # Errors
+    ///
+    /// σ is negative or not a number; the cloud is another one; there is no proof that the radius
+    /// stays positive.
     pub fn smoothed(&self, cloud: &PointCloud, sigma: f64) -> Result<Self, FitError> {
         if !(sigma.is_finite() && sigma >= 0.0) {
             return Err(FitError::Heat { sigma });
@@ -205,13 +211,13 @@ impl Fit {
 /// Fits r(p) = Σ β Y to the cloud seen from its mean (Sec. III-B and IV-A of the paper), with a
 /// penalty, and proves the result positive.
 ///
-/// A cloud whose surface is met twice in more than [`MAX_MULTIPLE`] of the directions is refused, and
-/// one that leaves more than [`MAX_UNOBSERVED`] of them open, and an open container, see [`OpenContainer`].
-/// Points that are both far from the surface and alone are outliers: they lose their weight and
-/// the fit is repeated, at most four times; a cloud without them is fitted once. Directions in
-/// which nothing was seen take part with a membrane spanned from what was seen around them. A λ
-/// chosen from the data is raised if the surface is not proved positive or leaves the data by far;
-/// a λ that was given is not.
+/// A cloud whose surface is met twice in more than [`MAX_MULTIPLE`] of the directions is refused,
+/// and one that leaves more than [`MAX_UNOBSERVED`] of them open, and an open container, see
+/// [`OpenContainer`]. Points that are both far from the surface and isolated are outliers: they
+/// lose their weight and the fit is repeated, at most four times. A cloud without outliers is
+/// fitted once. Directions without points get a value by harmonic continuation of the radii around
+/// them. A λ chosen from the data is raised if the surface is not proved positive or deviates far
+/// from the data; a given λ is not.
 pub fn fit(cloud: &PointCloud, settings: &FitSettings) -> Result<Fit, FitError> {
     let mut outliers: Vec<usize> = Vec::new();
     let mut round = 0;
@@ -219,7 +225,7 @@ pub fn fit(cloud: &PointCloud, settings: &FitSettings) -> Result<Fit, FitError> 
         let view = View::new(cloud, &outliers)?;
         let visibility = measure_visibility(&view.samples);
         if let Some(error) = refusal(&visibility) {
-            // A swarm of outliers looks like a second sheet: look again without it.
+            // A cluster of outliers looks like a second sheet, so the test is repeated without it.
             let outlying = isolated_points(&view.points);
             if round > 0 || outlying.is_empty() {
                 return Err(error);
@@ -240,7 +246,7 @@ pub fn fit(cloud: &PointCloud, settings: &FitSettings) -> Result<Fit, FitError> 
     }
 }
 
-/// Why a cloud is the graph of no radius, if it is not.
+/// The reason why a cloud is not the graph of a radius, if it is not.
 fn refusal(visibility: &Visibility) -> Option<FitError> {
     let limit = visibility
         .opening
@@ -384,11 +390,12 @@ impl<'a> View<'a> {
     }
 }
 
-/// The λ of the marginal likelihood, eased, but no less than the samples can bear.
+/// The λ of the marginal likelihood, reduced by a factor, but not below the least λ that the number
+/// of samples supports.
 ///
-/// With fewer samples than coefficients the likelihood may see no noise at all. Then λ is at least
-/// the one whose smoother halves the highest degree that N samples resolve: the N/4π samples a
-/// steradian weigh as much as λ(l(l+1))².
+/// With fewer samples than coefficients the likelihood may estimate no noise at all. Then λ is at
+/// least the one that halves the highest degree that N samples resolve: N/4π samples per steradian
+/// have the weight λ(l(l+1))².
 pub(crate) fn choose_penalty(
     gram: &Gram,
     samples: usize,

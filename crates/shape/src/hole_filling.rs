@@ -1,4 +1,4 @@
-//! What to assume where a cloud has nothing: a membrane over the hole.
+//! Radii for directions without points: harmonic continuation over the holes of a cloud.
 
 use std::borrow::Cow;
 
@@ -7,15 +7,15 @@ use sph::Direction;
 use crate::point_cloud::RadialSamples;
 use crate::sphere_partition::SpherePartition;
 
-/// Sweeps of Gauss and Seidel; holes are a few dozen cells wide at most.
+/// Number of Gauss–Seidel sweeps; holes are at most a few dozen cells wide.
 const SWEEPS: usize = 200;
 
 /// The samples, followed by one for every unobserved direction; borrowed where there is none.
 ///
-/// Smoothness alone lets a surface shoot up over a hole as wide as half the sphere. The value given
-/// to an unobserved direction is the harmonic continuation of what was seen around the hole (a discrete
+/// Smoothness alone does not bound a surface over a hole as wide as half the sphere. The value for
+/// an unobserved direction is the harmonic continuation of the radii around the hole (a discrete
 /// Laplace equation on cells), so it stays between the least and the largest radius at the rim. It
-/// weighs as much as one point of the cloud.
+/// has the weight of one point of the cloud.
 pub(crate) fn fill_holes<'a>(
     samples: &'a RadialSamples,
     unobserved: &[Direction],
@@ -32,7 +32,7 @@ pub(crate) fn fill_holes<'a>(
     Cow::Owned(filled)
 }
 
-/// Mean radius of every seen cell, and the mean of the neighbours for every other.
+/// Mean radius of every observed cell, and the mean of the neighbours for every other cell.
 fn membrane(samples: &RadialSamples) -> Vec<f64> {
     let cells = SpherePartition::for_views(samples.radii.len());
     let mut sums = vec![(0.0, 0_usize); cells.count()];

@@ -10,13 +10,14 @@ use crate::normals::{normals, normals_at};
 
 /// Points per half wave of N on the first grid.
 const OVERSAMPLING: usize = 5;
-/// A normal shorter than this part of the longest one is taken for zero.
+/// A normal shorter than this part of the longest one counts as zero.
 const VANISHING: f64 = 1e-6;
 /// Errors of the normals themselves, as a part of the longest one.
 const ROUNDING: f64 = 1e-9;
 /// The proved bound is at least this part of the shortest normal seen.
 const SHARE: f64 = 0.5;
-/// Cells quartered at most, a few seconds at L = 50; long and lean scans at L = 50 need some thirty.
+/// Largest number of subdivided cells, a few seconds at L = 50. Elongated scans at L = 50 need
+/// about thirty.
 const MOST_CELLS: usize = 5_000;
 
 /// Points of a stencil along one axis, and of those the first corner of its cell.
@@ -36,10 +37,10 @@ pub struct Immersion {
     pub seen_upper: f64,
 }
 
-/// Why three functions are no surface in M^sph.
+/// Why three functions are not a surface in M^sph.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SphericalError {
-    /// The normal vanishes, or nearly: the map is no immersion.
+    /// The normal vanishes, or nearly so: the map is not an immersion.
     #[error(
         "not an immersion: the area element falls to {seen:.3e} m² along ({x:.3}, {y:.3}, {z:.3}), where the largest is {largest:.3e} m²"
     )]
@@ -55,8 +56,8 @@ pub enum SphericalError {
         /// Largest |f_u × f_v|.
         largest: f64,
     },
-    /// The normal was nowhere zero, but too short in too many places for a proof within the limit of
-    /// work.
+    /// The normal was zero nowhere, but too short in too many places for a proof within the limit
+    /// of work.
     #[error(
         "cannot prove the map an immersion: {open} places remain after {cells} cells, the least area element {seen:.3e} m² along ({x:.3}, {y:.3}, {z:.3}), where the largest is {largest:.3e} m²; a lower degree or more penalty may help"
     )]
@@ -86,13 +87,14 @@ pub enum SphericalError {
 
 /// Proves that N = f_u × f_v vanishes nowhere.
 ///
-/// The sphere is cut into cells in (θ, φ). Over a cell N·d, d the mean direction of N at its corners, is
-/// a trigonometric polynomial of degree D = 2L+1 in both angles, and so its polynomial over the 8 × 8
-/// points around the cell to within (1 + Σ max|w|)·|N|_∞ (D·step)⁸ × 1.07e-3 (Bernstein's inequality
-/// for the eighth derivative). That polynomial is the bilinear interpolant of the corners, which stays
-/// above their least value, and a part that sees only what the bilinear function misses at the other
-/// points. Cells that are not settled so are quartered, those with the shortest normal first, until N
-/// is found to vanish (below 1e-6 of its largest length), all are settled, or the work exceeds its limit.
+/// The sphere is cut into cells in (θ, φ). Over a cell N·d, d the mean direction of N at its
+/// corners, is a trigonometric polynomial of degree D = 2L+1 in both angles, and so its polynomial
+/// over the 8 × 8 points around the cell to within (1 + Σ max|w|)·|N|_∞ (D·step)⁸ × 1.07e-3
+/// (Bernstein's inequality for the eighth derivative). That polynomial is the sum of the bilinear
+/// interpolant of the corners, which stays above their least value, and a remainder that depends
+/// only on the deviation from the bilinear function at the other points. Cells that are not settled
+/// so are quartered, those with the shortest normal first, until N is found to vanish (below 1e-6
+/// of its largest length), all are settled, or the work exceeds its limit.
 pub(crate) fn certify(coordinates: &[Coefficients; 3]) -> Result<Immersion, SphericalError> {
     let degree = 2 * coordinates[0].degree() + 1;
     let half = OVERSAMPLING * degree.max(8);
@@ -260,7 +262,7 @@ impl Search<'_> {
         }
     }
 
-    /// A lower bound of |N| over a cell; not positive where it says nothing.
+    /// A lower bound of |N| over a cell; not positive if nothing is proved.
     fn bound(&self, step: f64, at: &impl Fn(usize, usize) -> Vector3<f64>) -> f64 {
         let corners = corners(at);
         let Some(along) = corners.iter().sum::<Vector3<f64>>().try_normalize(0.0) else {
@@ -285,7 +287,7 @@ impl Search<'_> {
         lower
     }
 
-    /// Quarters open cells until there are none.
+    /// Subdivides open cells until there are none.
     fn run(mut self) -> Result<Immersion, SphericalError> {
         let mut cells = 0;
         while let Some(cell) = self.open.pop() {

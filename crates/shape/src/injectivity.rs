@@ -14,10 +14,10 @@ const RINGS: f64 = 1.2;
 const MOST_CELLS: usize = 500_000;
 const DEEPEST: u32 = 9;
 
-/// What is known about whether a surface touches itself.
+/// The result of the proof that a surface does not touch itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Embedding {
-    /// It does not: the map is proved injective and an immersion, with this many cells.
+    /// The map is proved to be injective and an immersion.
     Proved {
         /// Cells of the proof.
         cells: usize,
@@ -49,12 +49,13 @@ enum Kind {
     Inner(Vec<usize>),
 }
 
-/// Proves that f = (x, y, z) is injective, or names the nearest pair of places for which it cannot.
+/// Proves that f = (x, y, z) is injective, or returns the nearest pair of points for which it
+/// cannot.
 ///
 /// A search over pairs of cells. A pair is settled if one cell is within the other's reach
-/// ([`Cell::reach`], by the mean value of df along great circles), or if slabs or boxes separate the
-/// images. Cells of pairs that are not settled are quartered. Bounds of second-order remainders are
-/// certified ([`ThirdDerivatives`]), so that only rounding is left to trust, with a margin for it.
+/// ([`Cell::reach`], by the mean value of df along great circles), or if slabs or boxes separate
+/// the images. Cells of pairs that are not settled are quartered. Bounds of second-order remainders
+/// are certified ([`ThirdDerivatives`]). Rounding is covered by a margin.
 pub(crate) fn certify(coordinates: &[Coefficients; 3]) -> Embedding {
     let mut search = Search::new(coordinates);
     let mut open = vec![(search.root, search.root)];
@@ -244,7 +245,7 @@ impl<'a> Search<'a> {
         of(*a).max(of(*b))
     }
 
-    /// Quarters the larger cell of every pair, and every cell that is not within its own reach.
+    /// Subdivides the larger cell of every pair, and every cell that is not within its own reach.
     fn quarter(&mut self, pairs: &[(usize, usize)]) {
         let mut split: Vec<usize> = Vec::new();
         for (a, b) in pairs {
@@ -272,7 +273,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The verdict where pairs are left.
+    /// The result if pairs are left.
     fn nearest(&self, pairs: &[(usize, usize)]) -> Embedding {
         let cell = |node: usize| match &self.nodes[node].kind {
             Kind::Leaf(cell) => self.cells.get(*cell),

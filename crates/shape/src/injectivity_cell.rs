@@ -1,4 +1,4 @@
-//! One small piece of the sphere and what is certain about a map on it.
+//! A small piece of the sphere and certified bounds of a map on it.
 
 use nalgebra::{Matrix3, Vector3};
 use sph::direction::{angle, tangent_frame};
@@ -6,9 +6,9 @@ use sph::{Direction, Jet, SphericalCoords};
 
 use crate::third_derivatives::ThirdDerivatives;
 
-/// Farthest that the injectivity of one expansion is followed, radians.
+/// Largest radius of injectivity of one expansion, radians.
 const FARTHEST: f64 = 0.06;
-/// What of the contraction is left for rounding.
+/// Margin of the contraction for rounding.
 const ROUNDING: f64 = 1e-6;
 /// Rounding of places, as a share of the size of the map.
 const PLACE_ROUNDING: f64 = 1e-11;
@@ -61,7 +61,7 @@ pub(crate) struct Cell {
     pub(crate) centre: Direction,
     /// All of the piece is within this angle.
     pub(crate) radius: f64,
-    /// f is injective on all points within this angle of the centre; 0 where nothing is known.
+    /// f is injective on all points within this angle of the centre; 0 if nothing is proved.
     pub(crate) reach: f64,
     /// f(centre).
     pub(crate) place: Vector3<f64>,
@@ -149,7 +149,7 @@ impl Cell {
                 .is_some_and(|d| separates(&d))
     }
 
-    /// The corners of a box that holds f of the piece.
+    /// The corners of a box that contains f of the piece.
     pub(crate) fn bounds(&self) -> (Vector3<f64>, Vector3<f64>) {
         let half = Vector3::new(
             self.extent(&Vector3::x()),
@@ -159,8 +159,8 @@ impl Cell {
         (self.place - half, self.place + half)
     }
 
-    /// Whether every point of the other piece is so near that f takes different values on the two pieces
-    /// wherever the points differ.
+    /// Whether the other piece is so near that f is proved injective on the union of the two
+    /// pieces.
     pub(crate) fn reaches(&self, other: &Self) -> bool {
         angle(&self.centre, &other.centre) + other.radius <= self.reach && self.radius <= self.reach
     }

@@ -1,7 +1,7 @@
 //! Objects: clouds, meshes, smooth surfaces, and the space that the surfaces live in.
 //!
 //! Surfaces live in a centred frame, whose origin is the mean of the cloud (Sec. IV-A of the
-//! paper); [`fit::Fit`] keeps the way back to the frame of the cloud.
+//! paper); [`fit::Fit`] stores the transformation to the frame of the cloud.
 //!
 //! A cloud becomes a surface whose radius is proved positive in every direction:
 //!

@@ -21,7 +21,7 @@ pub(crate) fn grid_directions(grid: &RingGrid) -> Vec<Vector3<f64>> {
         .collect()
 }
 
-/// f_u × f_v on a grid: N_x = p·(∇y × ∇z) = p·((p×∇y) × (p×∇z)), and so on round.
+/// f_u × f_v on a grid: N_x = p·(∇y × ∇z) = p·((p×∇y) × (p×∇z)), and cyclically for y and z.
 ///
 /// Nine syntheses; exact, poles included.
 pub(crate) fn normals(coordinates: &[Coefficients; 3], grid: &RingGrid) -> Vec<Vector3<f64>> {
@@ -40,7 +40,7 @@ pub(crate) fn normals(coordinates: &[Coefficients; 3], grid: &RingGrid) -> Vec<V
         .collect()
 }
 
-/// f_u × f_v at single points, by direct sums: 20 L² flops a point, good to rounding.
+/// f_u × f_v at single points, by direct sums: 20 L² flops per point, accurate to rounding.
 pub(crate) fn normals_at(
     coordinates: &[Coefficients; 3],
     directions: &[Direction],

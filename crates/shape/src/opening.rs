@@ -1,10 +1,10 @@
 //! Is a cloud with an opening a container, or a solid whose far side was not seen?
 //!
-//! Where noise is as large as a wall is thick, no direction shows two sheets any more, and a cup looks
-//! like a solid with a part missing. Two things still tell them apart: the shape of the scatter, which
-//! two walls make flatter than a normal distribution, and how the points are spread. What nothing tells
-//! apart is a deep container, its wall thinner than some 1.5 deviations of the noise, and a solid that
-//! stands on an unobserved side.
+//! If the noise is as large as the thickness of a wall, no direction shows two separate sheets, and
+//! a cup looks like a solid with an unobserved part. Two properties still distinguish the two
+//! cases: the distribution of the residuals, which is flatter than normal for two walls, and the
+//! density of the points. The test cannot distinguish a deep container whose wall is thinner than
+//! about 1.5 standard deviations of the noise from a solid that stands on an unobserved side.
 
 use nalgebra::Vector3;
 use sph::Direction;
@@ -16,61 +16,63 @@ use crate::sphere_partition::SpherePartition;
 
 /// Openings of a smaller share of the sphere than this are holes of a scan.
 const MIN_OPENING: f64 = 0.05;
-/// An opening of a larger share than this is wider than what a scan from all sides leaves below an
-/// object on a table, unless that is as flat as a bowl upside down; half a hollow ball, seen from its
-/// mean, has 0.25.
+/// A scan from all sides leaves an opening of at most this share below an object on a table, unless
+/// the object is as flat as an inverted bowl. Half a hollow ball, seen from its mean, has 0.25.
 const WIDE_OPENING: f64 = 0.2;
 
 /// Directions tried as the middle of the opening.
 const AXES: usize = 300;
-/// One point in so many may lie in the opening: rims are noisy, and points are mislaid.
+/// At most one of this many points may lie in the opening, because rims are noisy and clouds
+/// contain outliers.
 const OUTLIER_DIVISOR: usize = 5000;
 
-/// Points a cell should hold for the shape of their scatter, and for their density.
+/// Points per cell needed to judge the distribution of the residuals, and to judge their density.
 const POINTS_PER_SCATTER: usize = 64;
 const POINTS_PER_DENSITY: usize = 24;
-/// Mean distance from the mean over standard deviation of a normal distribution, √(2/π), and the
-/// deviation of that ratio for n values, times √n.
+/// Geary's ratio (mean absolute deviation over standard deviation) of a normal distribution,
+/// √(2/π), and the standard error of that ratio for n values, times √n.
 const NORMAL_RATIO: f64 = 0.797_884_560_8;
 const RATIO_DEVIATION: f64 = 0.212;
-/// The ratio of two walls exceeds the normal one by this much if they are 1.5 deviations of the noise
-/// apart, and it must be known to so many of its deviations.
+/// Least excess of Geary's ratio over its normal value (two walls 1.5 standard deviations apart),
+/// and its required significance in standard errors.
 const LEAST_EXCESS: f64 = 0.012;
 const LEAST_CERTAINTY: f64 = 4.0;
-/// Neighbours share what a quadratic cannot follow, and differ by noise or walls: half their mean
-/// squared difference is at least this part of the scatter where it is one of the latter.
+/// Neighbours have equal residuals where the quadratic misfits, and different ones under noise or
+/// with two walls. In the second case half their mean squared difference is at least this part of
+/// the variance.
 const UNSHARED: f64 = 0.75;
-/// Share of the points that must scatter so.
+/// Least share of the points in such cells.
 const LEAST_PART: f64 = 0.25;
 /// View axes tried.
 const VIEWS: usize = 200;
 /// Least |n·a| of a surface that is seen at all.
 const GRAZING: f64 = 0.05;
-/// log likelihood a point by which an even spread must explain the points better than one view.
+/// Least log-likelihood ratio per point of a uniform density against one view.
 const LEAST_EVIDENCE: f64 = 0.01;
 
 /// The widest round opening of a cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Opening {
-    /// Its middle, seen from the centre.
+    /// Direction of its middle from the centre.
     pub axis: Direction,
     /// Share of the sphere, 0 to 1.
     pub share: f64,
-    /// What makes the cloud a container; `None` if it may be a solid that was not seen from there.
+    /// The evidence for a container; `None` if the cloud may be a solid that was not observed from
+    /// there.
     pub container: Option<OpenContainer>,
 }
 
-/// Why an opening is taken for that of a container.
+/// The evidence for a container.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OpenContainer {
-    /// The scatter about the surface is that of two walls.
+    /// The residuals about the surface are distributed as those of two walls.
     TwoWalls,
-    /// The opening is wide, and the points are spread over the surface as no single view spreads
-    /// them: whoever saw the surface from all sides saw nothing in the opening.
+    /// The opening is wide, and the density of the points is that of views from all sides, none of
+    /// which observed a point in the opening.
     EvenDensity,
 }
 
-/// The widest opening of at least `MIN_OPENING`, if any, and whether it is that of a container.
+/// The widest opening of at least `MIN_OPENING`, if any, and whether the cloud is a container.
 ///
 /// About N operations where there is none, some 300 N otherwise.
 pub(crate) fn opening(samples: &RadialSamples) -> Option<Opening> {
@@ -89,7 +91,8 @@ pub(crate) fn opening(samples: &RadialSamples) -> Option<Opening> {
     })
 }
 
-/// Middle and share of the largest cap that holds at most one point in [`OUTLIER_DIVISOR`], if it is an opening.
+/// Middle and share of the largest cap that contains at most one point in [`OUTLIER_DIVISOR`], if
+/// it is an opening.
 fn widest_opening(directions: &[Direction]) -> Option<(Direction, f64)> {
     let allowed = directions.len() / OUTLIER_DIVISOR;
     let away = |axis: &Direction, p: &Direction| 0.5 * (1.0 - axis.dot(p));
@@ -106,7 +109,8 @@ fn widest_opening(directions: &[Direction]) -> Option<(Direction, f64)> {
     gaps.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Cells with enough points whose surroundings hold points too, away from the rim of the opening.
+/// Cells with enough points, with points in all neighbouring cells, away from the rim of the
+/// opening.
 fn inner_cells(
     samples: &RadialSamples,
     points: usize,
@@ -130,7 +134,8 @@ fn inner_cells(
     (cells, inner)
 }
 
-/// Geary's ratio of the scatter (mean size over standard deviation), pooled over the inner cells.
+/// Geary's ratio of the residuals (mean absolute deviation over standard deviation), pooled over
+/// the inner cells.
 ///
 /// Two walls d apart under noise of deviation σ exceed the normal ratio by 0.006 at d = 1.2 σ, by
 /// 0.027 at 2 σ and by 0.10 at 4 σ; edges, steps and outliers stay below it.
@@ -144,7 +149,7 @@ fn scatter_of_two_walls(samples: &RadialSamples) -> bool {
         let n = members.len() as f64;
         let variance = patch.rest.iter().map(|e| e * e).sum::<f64>() / n;
         let deviation = variance.sqrt();
-        // Two walls scatter by half the gap.
+        // The standard deviation of two walls is half their gap.
         let told_apart = deviation >= 0.5 * LEAST_GAP * patch.radius;
         if told_apart && unshared(samples, &members, &patch.rest) >= UNSHARED * variance {
             let size = patch.rest.iter().map(|e| e.abs()).sum::<f64>() / n;
@@ -156,7 +161,7 @@ fn scatter_of_two_walls(samples: &RadialSamples) -> bool {
     count >= LEAST_PART * samples.radii.len() as f64 && excess / count >= certain.max(LEAST_EXCESS)
 }
 
-/// Half the mean squared difference between each member's rest and its nearest neighbour's.
+/// Half the mean squared difference between the residuals of nearest neighbours.
 fn unshared(samples: &RadialSamples, members: &[usize], rest: &[f64]) -> f64 {
     let nearest = |a: usize| {
         let p = samples.directions[members[a]];
@@ -168,12 +173,13 @@ fn unshared(samples: &RadialSamples, members: &[usize], rest: &[f64]) -> f64 {
     0.5 * differences.map(|d| d * d).sum::<f64>() / members.len() as f64
 }
 
-/// Whether the density of the points is better explained as even over the surface than as one view's.
+/// Whether the density of the points is better explained by a uniform density over the surface than
+/// by one view.
 ///
-/// From far away along a, a camera finds |n·a| points on a unit of area with normal n. With N_k points
-/// on area A_k, log likelihood of a view less that of an even spread is
-/// Σ N_k log w_k − N log(Σ A_k w_k / Σ A_k), w_k = |n_k·a|; the best of many views is taken. A surface
-/// of one slope could be either, and counts as a view.
+/// A distant camera in the direction a observes |n·a| points per unit of area with normal n. With
+/// N_k points on area A_k, the log likelihood of a view minus that of a uniform density is Σ N_k
+/// log w_k − N log(Σ A_k w_k / Σ A_k), w_k = |n_k·a|; the best of many views is taken. A flat
+/// surface fits both and counts as one view.
 fn seen_from_all_sides(samples: &RadialSamples) -> bool {
     let (cells, inner) = inner_cells(samples, POINTS_PER_DENSITY);
     let pieces: Vec<(f64, f64, Vector3<f64>)> = inner

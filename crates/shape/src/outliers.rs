@@ -1,4 +1,4 @@
-//! Points that belong to no surface: far from the fitted one, and alone.
+//! Outliers: points that are far from the fitted surface and isolated.
 
 use nalgebra::Point3;
 
@@ -10,16 +10,16 @@ const FAR: f64 = 4.0;
 const NORMAL: f64 = 1.4826;
 /// Neighbours are counted within this many mean distances between points.
 const REACH: f64 = 2.0;
-/// A flat surface has 13 points within reach of one of its points; a point with fewer others than
-/// this is alone.
+/// A flat surface has 13 points within that radius of one of its points; a point with fewer
+/// neighbours than this is isolated.
 const MIN_NEIGHBOURS: usize = 2;
 
 /// Indices of the points with a large residual and hardly any neighbours.
 ///
-/// The loss behind it is a redescending one with a hard edge: weight 1 up to 4σ, with σ from the
-/// median absolute residual, and 0 beyond it, but only for points that are alone in space. What a
-/// radius cannot describe (an ear, a handle) is far from the surface too, but in company; it keeps
-/// its weight, so that clouds without outliers lose nothing. Costs a few operations a point.
+/// The loss is redescending with a hard edge: weight 1 up to 4σ, with σ from the median absolute
+/// residual, and 0 beyond it, but only for isolated points. Points of a part that no radius
+/// describes (an ear, a handle) are far from the surface too, but have neighbours. They keep their
+/// weight, so that clouds without outliers lose no point. Costs a few operations per point.
 pub(crate) fn outlying_points(points: &[Point3<f64>], residuals: &[f64]) -> Vec<usize> {
     let limit = FAR * NORMAL * median(residuals.iter().map(|e| e.abs()).collect());
     let far: Vec<usize> = (0..points.len())
@@ -28,7 +28,7 @@ pub(crate) fn outlying_points(points: &[Point3<f64>], residuals: &[f64]) -> Vec<
     isolated(points, far)
 }
 
-/// Indices of the points with hardly any neighbours, wherever the surface is.
+/// Indices of the points with hardly any neighbours, at any distance from the surface.
 pub(crate) fn isolated_points(points: &[Point3<f64>]) -> Vec<usize> {
     isolated(points, (0..points.len()).collect())
 }
@@ -42,7 +42,7 @@ fn isolated(points: &[Point3<f64>], suspects: Vec<usize>) -> Vec<usize> {
         return Vec::new();
     }
     let grid = VoxelGrid::new(points, reach);
-    // The point itself is among those within reach.
+    // The point itself is among those within the radius.
     let alone = |i: &usize| {
         let near = grid.within(&points[*i], reach);
         near.take(MIN_NEIGHBOURS + 1).count() <= MIN_NEIGHBOURS

@@ -1,4 +1,4 @@
-//! A small piece of a cloud, freed from slope and curvature.
+//! A small piece of a cloud and its residuals about a fitted quadratic.
 
 use nalgebra::{SMatrix, SVector, UnitVector3, Vector3};
 use sph::Direction;
@@ -10,7 +10,7 @@ use crate::sphere_partition::SpherePartition;
 /// Two sheets of points closer than this share of the radius count as one.
 pub(crate) const LEAST_GAP: f64 = 0.01;
 
-/// The quadratic r(u, v) over the tangent plane that fits some samples best, and what it leaves.
+/// The least-squares quadratic r(u, v) over the tangent plane for some samples, and its residuals.
 pub(crate) struct Patch {
     /// Mean direction of the samples.
     pub(crate) middle: Direction,
@@ -40,7 +40,7 @@ impl Patch {
             gram += row * row.transpose();
             right += row * samples.radii[i];
         }
-        // A whiff of ridge keeps points on one line solvable.
+        // A small ridge term keeps the system regular for points on one line.
         gram += SMatrix::identity() * (1e-9 * gram.trace());
         let trend = gram.cholesky()?.solve(&right);
         let rest = |i: &usize| samples.radii[*i] - row(*i).dot(&trend);

@@ -1,10 +1,10 @@
-//! Point clouds and their way into the centred frame.
+//! Point clouds, and their directions and radii about a centre.
 
 use nalgebra::{Point3, Vector3};
 use sph::Direction;
 use sph::direction::direction_and_radius;
 
-/// Why points do not make a cloud.
+/// Why points are not accepted as a cloud.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CloudError {
     /// Too few points for a surface.
@@ -47,12 +47,12 @@ pub enum CloudError {
         /// Largest side of the bounding box.
         extent: f64,
     },
-    /// All points stand in one place.
+    /// All points coincide.
     #[error("the cloud has no extent: all points are at the same place")]
     NoExtent,
 }
 
-/// Points of an object's surface, metres, in the frame of whoever made them. Always finite.
+/// Points of an object's surface, metres, in the frame of their source. They are always finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointCloud {
     points: Vec<Point3<f64>>,
@@ -71,7 +71,7 @@ impl PointCloud {
     /// The least number of points that bound a solid.
     pub const MIN_POINTS: usize = 4;
 
-    /// Largest coordinate, metres: map coordinates (northings) reach it, no other frame does.
+    /// Largest coordinate, metres. Only map coordinates (northings) come near it.
     pub const FARTHEST: f64 = 1e7;
 
     /// Least extent, metres.
@@ -81,7 +81,7 @@ impl PointCloud {
     /// [`PointCloud::FARTHEST`], and that they have an extent.
     ///
     /// # Errors
-    /// The first of these that fails, with the point.
+    /// The first of these conditions that fails, with the point.
     pub fn new(points: Vec<Point3<f64>>) -> Result<Self, CloudError> {
         if points.len() < Self::MIN_POINTS {
             return Err(CloudError::TooFew {
@@ -145,8 +145,8 @@ impl PointCloud {
         Self::new(self.points.iter().map(|p| p * factor).collect())
     }
 
-    /// Directions and radii seen from a centre. A point at the centre itself has no direction and
-    /// is left out.
+    /// Directions and radii seen from a centre. A point at the centre has no direction and is
+    /// omitted.
     pub fn seen_from(&self, centre: &Point3<f64>) -> RadialSamples {
         let (directions, radii) = self
             .points

@@ -9,7 +9,7 @@ use crate::mass::{self, MassProperties};
 use crate::surface::{Differential, Surface};
 use crate::triangle_mesh::TriangleMesh;
 
-/// Points per half wave in the certificate; the first that decides is used.
+/// Points per half wave in the certificate; the coarsest grid that decides is used.
 const OVERSAMPLING: [usize; 2] = [8, 16];
 
 /// Why a function is not the radius of a surface in M^rad.
@@ -23,7 +23,7 @@ pub enum RadialError {
         /// A value it takes.
         seen: f64,
     },
-    /// The radius was positive wherever it was looked at, but that is no proof.
+    /// The radius was positive wherever it was evaluated, but this was not proved.
     #[error(
         "cannot prove the radial function positive: at least {seen:.6} m on a grid, but only above {lower:.6} m for certain"
     )]
@@ -101,9 +101,9 @@ impl RadialShape {
         (self.range.lower, self.range.upper)
     }
 
-    /// The same bounds as [`RadialShape::radius_bounds`], each within `share` of half the range of
-    /// radii that are attained. Costs about 30 ms at L = 50, against nothing for `radius_bounds`,
-    /// whose bounds are about 2 % of that range wide of the radii.
+    /// Tighter bounds than [`RadialShape::radius_bounds`]: each is within `share` times half the
+    /// range of attained radii. Cost: about 30 ms at L = 50. The bounds of `radius_bounds` are
+    /// known already and are about 2 % of that range wider.
     ///
     /// ```
     /// let shape = shape::RadialShape::sphere(8, 0.04)?;
@@ -148,8 +148,8 @@ impl RadialShape {
     /// The paper's regular (θ,φ) mesh: `rows` circles of latitude from pole to pole, `columns`
     /// points each. 100 × 100 is the paper's mesh of 10,000 vertices (Sec. IV-C).
     ///
-    /// The poles appear once per column, as on the paper's regular grid; triangles that would have
-    /// no area there are left out. Counter-clockwise seen from outside.
+    /// The poles appear once per column, as on the paper's regular grid; triangles without area at
+    /// the poles are omitted. Triangles are counter-clockwise seen from outside.
     pub fn mesh(&self, rows: usize, columns: usize) -> TriangleMesh {
         let grid = RingGrid::equiangular(rows, columns);
         let radii = grid.synthesis(&self.coefficients).values;
@@ -201,8 +201,8 @@ pub(crate) fn differential_of(p: &Direction, jet: &sph::Jet) -> Differential {
     let direction = p.into_inner();
     let tangent = Matrix3::identity() - direction * direction.transpose();
     let (normal, length) = inward_normal(p, jet.value, &jet.gradient);
-    // N = ∇r − r p. Along v: dN = Hess v − p (∇r·v) − p (∇r·v) − r v, the first p from the
-    // turning of the tangent plane, the second from r; n = N/|N|.
+    // N = ∇r − r p. Along v: dN = Hess v − p (∇r·v) − p (∇r·v) − r v. The first term with p is due
+    // to the rotation of the tangent plane, the second to the change of r; n = N/|N|.
     let raw = jet.hessian - direction * jet.gradient.transpose() * 2.0 - tangent * jet.value;
     let unit = normal.into_inner();
     let across = Matrix3::identity() - unit * unit.transpose();

@@ -1,4 +1,4 @@
-//! A radial shape prepared for being read at many scattered points.
+//! A radial shape prepared for evaluation at many scattered points.
 
 use nalgebra::{Point3, UnitVector3};
 use sph::Direction;
@@ -10,9 +10,9 @@ use crate::surface::{Differential, Surface};
 
 /// A [`RadialShape`] whose r, ∇r and ∇²r come from a [`Field`] instead of a sum of (L+1)² terms.
 ///
-/// The same surface to about 1e-12 of its size, some fifty times faster a point at L = 50; made once
-/// for an ascent. Forward differences with δ = 1e-5 rad, as in the paper's ascent, keep seven digits
-/// of Q.
+/// The same surface to about 1e-12 of its size, about fifty times faster per point at L = 50;
+/// prepared once per ascent. Forward differences with δ = 1e-5 rad, as in the paper's ascent, keep
+/// seven digits of Q.
 #[derive(Clone, Debug)]
 pub struct RadialField {
     shape: RadialShape,
@@ -33,7 +33,8 @@ impl RadialField {
         &self.shape
     }
 
-    /// γ(t) = (1−t) f₁ + t f₂: from the two fields where they share a grid, else anew.
+    /// γ(t) = (1−t) f₁ + t f₂, interpolated between the two fields if they share a grid and
+    /// computed from the coefficients otherwise.
     pub fn deformation(from: &Self, to: &Self, t: f64) -> Result<Self, SpaceError> {
         let shape = deformation(&from.shape, &to.shape, t)?;
         // Fields of different degrees share no grid.

@@ -4,12 +4,11 @@ use sph::Coefficients;
 
 /// Coefficients of the three components of p × ∇_S f, each of the degree of f.
 ///
-/// The generators K_x = y∂_z − z∂_y, K_y = z∂_x − x∂_z, K_z = x∂_y − y∂_x mix only the orders of one
-/// degree. With C_m, S_m the real and imaginary part of Π_l^m(z)(x+iy)^m normalised as one complex
-/// harmonic, and a_m = √((l−m)(l+m+1)):
-/// K_x C_m = ½(a_m S_{m+1} + a_{m−1} S_{m−1}), K_x S_m = −½(a_m C_{m+1} + a_{m−1} C_{m−1}),
-/// K_y F_m = ½(−a_m F_{m+1} + a_{m−1} F_{m−1}) for F = C, S, and K_z C_m = −m S_m, K_z S_m = m C_m.
-/// Costs a few operations a coefficient.
+/// The generators K_x = y∂_z − z∂_y, K_y = z∂_x − x∂_z, K_z = x∂_y − y∂_x mix only the orders of
+/// one degree. With C_m, S_m the real and imaginary part of Π_l^m(z)(x+iy)^m normalised as one
+/// complex harmonic, and a_m = √((l−m)(l+m+1)): K_x C_m = ½(a_m S_{m+1} + a_{m−1} S_{m−1}), K_x S_m
+/// = −½(a_m C_{m+1} + a_{m−1} C_{m−1}), K_y F_m = ½(−a_m F_{m+1} + a_{m−1} F_{m−1}) for F = C, S,
+/// and K_z C_m = −m S_m, K_z S_m = m C_m. Costs a few operations per coefficient.
 pub(crate) fn rotational_gradient(f: &Coefficients) -> [Coefficients; 3] {
     let degree = f.degree();
     let mut out = std::array::from_fn(|_| Coefficients::zeros(degree));

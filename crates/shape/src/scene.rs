@@ -1,5 +1,5 @@
-//! What in a cloud is the object: repeated points, a support plane and other pieces are told apart
-//! before a surface is fitted.
+//! Finds the object in a cloud: repeated points, a support plane and other pieces are separated
+//! from it before a surface is fitted.
 
 mod footprint;
 mod pieces;
@@ -15,7 +15,7 @@ pub use thinning::distinct;
 /// Two points belong to one piece if a chain of points joins them with steps below about this many
 /// spacings.
 const LINK: f64 = 4.5;
-/// A group of fewer points than this, or of a smaller share of the points, is no piece: its points are
+/// The points of groups with fewer points than this, or with a smaller share of the points, are
 /// dropped and counted.
 const MIN_PIECE: (usize, f64) = (10, 5e-4);
 /// The largest piece is the object if it has this many times the points of the next one.
@@ -25,7 +25,7 @@ const SENTINEL: usize = 3;
 /// Pieces named in a message.
 const NAMED: usize = 8;
 
-/// How a scene is taken apart.
+/// Settings of the segmentation of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneSettings {
     /// The piece to take, 1 for the largest; by default the one that dominates.
@@ -116,7 +116,7 @@ pub struct Piece {
     pub taken: bool,
 }
 
-/// How many rows of a cloud are no part of the object, and why.
+/// The numbers of rows of a cloud that are not part of the object, by reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dropped {
     /// Rows that repeat another row.
@@ -131,7 +131,7 @@ pub struct Dropped {
     pub other_pieces: usize,
 }
 
-/// A cloud taken apart.
+/// The segmentation of a cloud.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Indices into the cloud of the object's points, increasing; each distinct point once.
@@ -140,7 +140,7 @@ pub struct Scene {
     pub support: Option<(Support, SupportSource)>,
     /// The pieces without the support, the largest first.
     pub pieces: Vec<Piece>,
-    /// What was left out.
+    /// The rows that are not part of the object.
     pub dropped: Dropped,
 }
 
@@ -200,7 +200,7 @@ impl std::fmt::Display for Piece {
     }
 }
 
-/// Takes a cloud apart: repeated points, then a support plane, then connected pieces.
+/// Segments a cloud: repeated points, then a support plane, then connected pieces.
 ///
 /// The result depends on the set of distinct points alone, neither on their order nor on how often a
 /// point is given. A plane counts as support only if the rest of the cloud lies on one side of it and if

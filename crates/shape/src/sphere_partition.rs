@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use sph::Direction;
 use sph::direction::{retract, tangent_frame};
 
-/// Points a coarse cell should hold, on average; an empty one is then no accident.
+/// Mean number of points per coarse cell; with this many an empty cell is significant.
 const POINTS_PER_VIEW: usize = 160;
 
 /// Cells of nearly equal area: bands of latitude, each cut into sectors.
@@ -27,7 +27,7 @@ impl SpherePartition {
         Self { starts }
     }
 
-    /// Cells coarse enough for an empty one to mean that nothing was seen there.
+    /// Cells so coarse that an empty one is significant: nothing was observed there.
     pub(crate) fn for_views(points: usize) -> Self {
         Self::new(points / POINTS_PER_VIEW)
     }

@@ -17,8 +17,8 @@ use crate::triangle_mesh::TriangleMesh;
 
 /// A proved immersion f = (x, y, z): S² → R³ with coordinates of degree ≤ L (the paper's M^sph).
 ///
-/// Coordinates in metres, in the centred frame; the normal f_u × f_v points outward. Whether the
-/// surface touches itself is another question, which [`SphericalShape::embedding`] answers.
+/// Coordinates in metres, in the centred frame; the normal f_u × f_v points outward. An immersion
+/// may touch itself; see [`SphericalShape::embedding`].
 #[derive(Clone, Debug)]
 pub struct SphericalShape {
     coordinates: [Coefficients; 3],
@@ -31,8 +31,8 @@ pub struct SphericalShape {
 impl SphericalShape {
     /// Proves that f_u × f_v vanishes nowhere ([`Immersion`]) and computes the mass properties.
     ///
-    /// Degrees may differ; all are filled up to the highest. Usually less than a second at L = 50; some seconds where it
-    /// gives up.
+    /// Degrees may differ; all are filled up to the highest. Cost: usually less than a second at L
+    /// = 50, and a few seconds where the proof fails.
     pub fn new(x: Coefficients, y: Coefficients, z: Coefficients) -> Result<Self, SphericalError> {
         let degree = x.degree().max(y.degree()).max(z.degree());
         let coordinates = [x, y, z].map(|c| c.with_degree(degree));
@@ -88,12 +88,12 @@ impl SphericalShape {
         Self::new(x, y, z)
     }
 
-    /// β of x, y and z, all of one degree.
+    /// The coefficients β of x, y and z, all of one degree.
     pub fn coordinates(&self) -> &[Coefficients; 3] {
         &self.coordinates
     }
 
-    /// L.
+    /// The degree L of the coefficients.
     pub fn degree(&self) -> usize {
         self.basis.degree()
     }
@@ -175,8 +175,8 @@ pub(crate) fn differential_of(p: &Direction, jets: &[Jet; 3]) -> Differential {
     let slope = slope(jets);
     let frame = sph::direction::tangent_frame(p);
     let (normal, length) = inward_normal(&slope, &frame);
-    // The frame (u, v) is carried along without turning, so that along w the derivative of
-    // f_u is Hess f (w, u), coordinate by coordinate.
+    // The frame (u, v) is parallel transported, so that along w the derivative of f_u is Hess f (w,
+    // u), coordinate by coordinate.
     let bend = |w: &Vector3<f64>, u: &Vector3<f64>| {
         Vector3::from(jets.each_ref().map(|j| w.dot(&(j.hessian * u))))
     };

@@ -33,7 +33,7 @@ impl SphericalField {
         }
     }
 
-    /// β of x, y and z, all of one degree.
+    /// The coefficients β of x, y and z, all of one degree.
     pub fn coordinates(&self) -> &[Coefficients; 3] {
         &self.coordinates
     }

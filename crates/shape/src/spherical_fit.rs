@@ -9,18 +9,18 @@ use crate::immersion::SphericalError;
 use crate::point_cloud::PointCloud;
 use crate::spherical::SphericalShape;
 
-/// Why points with sphere coordinates have no surface in M^sph.
+/// Why no surface in M^sph was fitted to points with sphere coordinates.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SphericalFitError {
     /// A regression failed.
     #[error(transparent)]
     Regression(#[from] RegressionError),
-    /// The fitted map is no immersion.
+    /// The fitted map is not an immersion.
     #[error(transparent)]
     Spherical(#[from] SphericalError),
 }
 
-/// A fitted map and how well it fits.
+/// A fitted map and its residuals.
 #[derive(Clone, Debug)]
 pub struct SphericalFit {
     /// The surface, in the centred frame.
@@ -39,8 +39,8 @@ pub struct SphericalFit {
 
 /// Fits f(pᵢ) ≈ xᵢ, coordinate by coordinate, and proves the result an immersion.
 ///
-/// `directions` gives every point of the cloud its place on the sphere; how they were found is the
-/// caller's business. λ is chosen for each coordinate unless it is given. Costs three radial fits.
+/// `directions` has one direction per point of the cloud, chosen by the caller. λ is chosen for
+/// each coordinate unless it is given. Costs three radial fits.
 pub fn fit_spherical(
     directions: &[Direction],
     cloud: &PointCloud,

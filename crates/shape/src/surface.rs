@@ -1,4 +1,4 @@
-//! What every parametrised surface f: S² → R³ can answer.
+//! The interface of every parametrised surface f: S² → R³.
 
 use nalgebra::{Matrix3, Point3, UnitVector3};
 use sph::Direction;
@@ -12,9 +12,9 @@ pub struct Differential {
     pub position: Point3<f64>,
     /// Inward unit normal n(p).
     pub inward_normal: UnitVector3<f64>,
-    /// df(p): moves of the point, metres a radian.
+    /// df(p), the derivative of the point, metres per radian.
     pub position_slope: Matrix3<f64>,
-    /// dn(p): turns of the inward normal, a radian.
+    /// dn(p), the derivative of the inward normal, per radian.
     pub normal_slope: Matrix3<f64>,
 }
 
@@ -46,7 +46,7 @@ pub trait Surface {
     /// f(p) and the inward unit normal there.
     fn contact(&self, p: &Direction) -> (Point3<f64>, UnitVector3<f64>);
 
-    /// f, the inward normal and how both change along the sphere.
+    /// f, the inward normal and their derivatives along the sphere.
     fn differential(&self, p: &Direction) -> Differential;
 
     /// Centroid of the enclosed solid at uniform density.

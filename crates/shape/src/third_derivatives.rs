@@ -95,7 +95,7 @@ impl ThirdDerivatives {
         let (low, high) = (theta - angle, theta + angle);
         let polar = low <= 0.0 || high >= std::f64::consts::PI;
         let mut most = 0.0_f64;
-        // A cap that holds no pole spans asin(sin angle / sin θ) in longitude on each side.
+        // A cap without a pole spans asin(sin angle / sin θ) in longitude on each side.
         let spread = (angle.sin() / theta.sin()).min(1.0).asin();
         for i in row(low - 1e-9)..=row(high + 1e-9) {
             let cells = &self.cells[i * self.longitudes..(i + 1) * self.longitudes];

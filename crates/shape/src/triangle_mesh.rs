@@ -1,4 +1,4 @@
-//! Triangle meshes, for collision checks and pictures.
+//! Triangle meshes, for collision tests and display.
 
 use nalgebra::{Point3, Vector3};
 use rand::{Rng, RngExt};
@@ -15,8 +15,8 @@ pub struct TriangleMesh {
 impl TriangleMesh {
     /// The surface r p over rings of (sin θ, cos θ) from pole to pole, `columns` longitudes each.
     ///
-    /// `radii` has one value a point, ring after ring. Triangles on a ring of zero length are
-    /// left out where they would have no area.
+    /// `radii` has one value per point, ring after ring. Triangles without area, on rings of zero
+    /// length, are omitted.
     pub fn from_rings(rings: &[(f64, f64)], columns: usize, radii: &[f64]) -> Self {
         let step = std::f64::consts::TAU / columns as f64;
         let mut vertices = Vec::with_capacity(radii.len());
@@ -88,7 +88,7 @@ impl TriangleMesh {
                 let index = cumulative.partition_point(|sum| *sum <= at);
                 let index = index.min(self.triangles.len() - 1);
                 let [a, b, c] = self.triangles[index].map(|i| self.vertices[i as usize]);
-                // The square root makes the density even over the triangle.
+                // The square root makes the density uniform over the triangle.
                 let (s, t) = (rng.random::<f64>().sqrt(), rng.random::<f64>());
                 a + (b - a) * (s * (1.0 - t)) + (c - a) * (s * t)
             })

@@ -1,4 +1,5 @@
-//! Is a cloud star-shaped from a centre? Where it is seen twice, and where not at all.
+//! Whether a cloud is star-shaped about a centre: directions with two sheets, and directions
+//! without points.
 
 use sph::Direction;
 
@@ -7,22 +8,23 @@ use crate::patch::{LEAST_GAP, Patch, members};
 use crate::point_cloud::RadialSamples;
 use crate::sphere_partition::SpherePartition;
 
-/// Cells in which two sheets are looked for: small enough for a quadratic to follow the surface.
+/// Number of cells in which two sheets are looked for; in cells this small a quadratic fits the
+/// surface.
 const CELLS: usize = 150;
-/// Points a cell should hold, on the sphere's average, in sparse and in dense clouds.
+/// Mean number of points per cell, in sparse and in dense clouds.
 const POINTS_PER_CELL: (usize, usize) = (32, 96);
-/// A cell with less than this share of them says nothing.
+/// A cell with less than this share of them is ignored.
 const LEAST_FILLED: f64 = 0.25;
-/// Share of the scatter that two sheets must explain. Two halves of a normal distribution explain
-/// 0.64 of it, of a uniform one 0.75.
+/// Share of the variance that two sheets must explain. The two halves of a normal distribution
+/// explain 0.64 of it, those of a uniform one 0.75.
 const TWO_SHEETS: f64 = 0.8;
-/// Each sheet holds at least this share of a cell's points: outliers make no sheet.
+/// Each sheet has at least this share of a cell's points, so that outliers do not count as a sheet.
 const LEAST_SHARE: f64 = 0.15;
 
 /// A direction along which the surface is met at two radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// The direction, seen from the centre.
+    /// The direction from the centre.
     pub direction: Direction,
     /// Mean radius of the inner sheet, metres.
     pub inner: f64,
@@ -30,14 +32,14 @@ pub struct Crossing {
     pub outer: f64,
 }
 
-/// How far a cloud is from the graph of one radius over the sphere.
+/// A measure of how far a cloud is from the graph of one radius over the sphere.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visibility {
     /// Share of the directions that hold enough points in which two sheets are met; 0 to 1.
     pub multiple: f64,
     /// Share of the sphere in which there is no point; 0 to 1.
     pub unobserved: f64,
-    /// Where two sheets are met, widest gap relative to the radius first.
+    /// Directions with two sheets, the widest gap relative to the radius first.
     pub crossings: Vec<Crossing>,
     /// Centres of the cells without points.
     pub unobserved_directions: Vec<Direction>,
@@ -47,10 +49,11 @@ pub struct Visibility {
 
 /// Looks for two sheets and for holes, cell by cell.
 ///
-/// In each of some 150 cells of equal area (a dense cloud has one for every 96 points) the radii are freed from slope and curvature (a
-/// quadratic over the cell) and split in two where the split explains most of what is left. Noise has
-/// one heap and is explained badly, two walls have two heaps; a steep wall is no crossing, since the
-/// quadratic takes its slope. Costs about 100 flops a point, and 600 where there is an opening.
+/// The sphere has about 150 cells of equal area; in a dense cloud there is one for every 96 points.
+/// In each cell a quadratic is fitted to the radii and subtracted, and the residuals are split in
+/// two (Otsu). With one mode the split explains little of the variance: noise. With two modes it
+/// explains most: two walls. A single steep wall has one mode, since the quadratic contains its
+/// slope. Costs about 100 flops per point, and 600 if there is an opening.
 pub fn measure_visibility(samples: &RadialSamples) -> Visibility {
     let count = samples.radii.len();
     let filled = (count / CELLS).clamp(POINTS_PER_CELL.0, POINTS_PER_CELL.1);
@@ -80,7 +83,7 @@ pub fn measure_visibility(samples: &RadialSamples) -> Visibility {
     }
 }
 
-/// Two heaps among the radii of one cell, if there are.
+/// The two modes of the residuals in one cell, if there are two.
 fn crossing(samples: &RadialSamples, members: &[usize]) -> Option<Crossing> {
     let patch = Patch::new(samples, members)?;
     let radii = members.iter().map(|i| samples.radii[*i]);

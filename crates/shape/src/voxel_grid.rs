@@ -11,7 +11,7 @@ pub(crate) type Key = [i64; 3];
 /// A map from the indices of cubes.
 pub(crate) type KeyMap<T> = HashMap<Key, T, BuildHasherDefault<KeyHasher>>;
 
-/// A multiplicative hash of a few integers; nobody chooses them to collide.
+/// A multiplicative hash of a few integers. It need not resist crafted collisions.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct KeyHasher(u64);
 
@@ -142,8 +142,8 @@ pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// At most `count` indices of points, spread over the cloud by chance: the same for the same points in
-/// any order.
+/// At most `count` indices of points, chosen pseudo-randomly. The choice does not depend on the
+/// order of the points.
 pub(crate) fn subset(points: &[Point3<f64>], count: usize) -> Vec<usize> {
     let rank = |i: &usize| {
         let mut hasher = KeyHasher::default();

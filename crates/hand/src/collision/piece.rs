@@ -241,6 +241,8 @@ pub(crate) fn direction_or_z(v: &Vector3<f64>) -> UnitVector3<f64> {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Point3;
+
     use super::*;
 
     /// Beyond edges and corners the planes of the faces alone underestimate the distance by a

@@ -207,7 +207,7 @@ fn tuple(text: &str) -> Option<Vec<usize>> {
         .split(',')
         .map(str::trim)
         .filter(|part| !part.is_empty());
-    // Python 2 wrote long integers with an L.
+    // Python 2 wrote long integers with an The degree L of the coefficients.
     parts
         .map(|part| part.trim_end_matches('L').parse().ok())
         .collect()

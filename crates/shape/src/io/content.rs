@@ -1,4 +1,4 @@
-//! What the first bytes of a file say about its format, whatever its name says.
+//! The format of a file by its first bytes, regardless of its name.
 
 use super::format::Format;
 use super::stl;
@@ -6,17 +6,17 @@ use super::stl;
 /// What the content is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Content {
-    /// A format that is read, by a mark that no other format has.
+    /// A supported format, identified by a mark that no other format has.
     Known(Format),
-    /// A format that is read, by the look of its lines; the name of the file goes first.
+    /// A supported format, guessed from its lines; the name of the file takes precedence.
     Likely(Format),
-    /// A format that is recognised to say so, and what to do.
+    /// A recognised format that is not supported, with advice.
     Foreign(&'static str, &'static str),
     /// Nothing is recognised.
     Unknown,
 }
 
-/// How much of the content is looked at.
+/// Number of bytes examined.
 const HEAD: usize = 4096;
 const CONVERT_MESH: &str = "save it as STL, OBJ, PLY, OFF or GLB";
 const CONVERT_CLOUD: &str = "save it as PLY, PCD or XYZ";

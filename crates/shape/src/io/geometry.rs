@@ -1,4 +1,4 @@
-//! What was read: points or a mesh, and what about them looks wrong.
+//! The result of reading a file: points or a mesh, with warnings.
 
 use std::fmt;
 
@@ -23,7 +23,7 @@ pub enum Geometry {
     Mesh(TriangleMesh),
 }
 
-/// Something about a file that its user should know, though it was read.
+/// A warning about a file that was read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Warning {
     /// Rows with NaN or infinite coordinates were left out.
@@ -41,7 +41,8 @@ pub enum Warning {
         /// How many.
         vertices: usize,
     },
-    /// The file is not of the format that its name says; it was read as what it is.
+    /// The content has another format than the name of the file says; the format of the content was
+    /// used.
     Content {
         /// The format of the name.
         named: Format,
@@ -122,7 +123,7 @@ pub struct Loaded {
     unused: usize,
     /// The format that the name of the file says.
     named: Format,
-    /// What looks wrong, for the caller to show.
+    /// Warnings, for the caller to display.
     pub warnings: Vec<Warning>,
 }
 
@@ -155,7 +156,7 @@ impl Raw {
 }
 
 impl Loaded {
-    /// Points that a mesh is sampled with unless the user says otherwise.
+    /// Default number of points sampled on a mesh.
     pub const MESH_SAMPLES: usize = 25_000;
 
     /// Drops vertices that are not finite, and the triangles that use them.
@@ -227,9 +228,10 @@ impl Loaded {
         }
     }
 
-    /// Why the coordinates are hardly metres: the largest extent of all points is below 5 mm, or that
-    /// of the middle nine tenths along each axis is above 2 m, so that a few points far away do not
-    /// decide. What [`PointCloud::new`] refuses is left to it.
+    /// The reason why the coordinates are probably not metres: the largest extent of all points is
+    /// below 5 mm, or that of the middle nine tenths along each axis is above 2 m. The outer tenth
+    /// is excluded so that a few distant points do not decide. Clouds that [`PointCloud::new`]
+    /// refuses are not reported here.
     pub fn implausible(&self) -> Option<ImplausibleExtent> {
         let points = self.vertices();
         let (least, most) = PLAUSIBLE_EXTENT;

@@ -27,7 +27,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raw, LoadError> {
     let mut open: Vec<(usize, Matrix4<f64>, usize)> = roots.into_iter().map(start).collect();
     let mut raw = Raw::default();
     let mut visited = 0;
-    // A mesh may be used by many nodes, but not to fill the memory.
+    // A mesh may be used by many nodes; the total is limited.
     let most = bytes.len().saturating_add(1000);
     while let Some((node, parent, depth)) = open.pop() {
         visited += 1;

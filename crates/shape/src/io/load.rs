@@ -1,4 +1,4 @@
-//! One door for every format.
+//! The reader of all formats.
 
 use super::content::{Content, recognise};
 use super::error::LoadError;
@@ -8,14 +8,13 @@ use super::{array, gltf, obj, off, pcd, ply, stl, xyz, zip};
 
 /// Reads a cloud or mesh. Units and frame are those of the file.
 ///
-/// The content decides on the format where it has a mark of its own, else the extension does. A
-/// name that says another format is a warning. Rows with NaN or infinite numbers are dropped and
-/// counted; an implausible extent is a warning ([`Loaded::warnings`]). Memory stays within a small
-/// multiple of `bytes`, whatever they claim.
+/// The format is that of the content where it has a distinctive mark, otherwise that of the
+/// extension. If the two differ, a warning says so. Rows with NaN or infinite numbers are dropped
+/// and counted; an implausible extent is a warning ([`Loaded::warnings`]). Memory stays within a
+/// small multiple of the size of `bytes`, regardless of the counts that they claim.
 ///
 /// # Errors
-/// Anything that is not as its format wants it, with its line or byte; a format that is not read,
-/// by its name.
+/// A violation of the format, with its line or byte; a format that is not supported, by its name.
 pub fn read_cloud(bytes: &[u8], extension: &str) -> Result<Loaded, LoadError> {
     if bytes.is_empty() {
         return Err(LoadError::Empty);
@@ -47,10 +46,10 @@ pub fn read_cloud(bytes: &[u8], extension: &str) -> Result<Loaded, LoadError> {
     Ok(Loaded::new(format, raw)?.named(named))
 }
 
-/// What the bytes are, if they are of a kind that is known and not read: a Git LFS pointer, a web page,
-/// a format of another kind of program.
+/// A description of bytes of a known kind that is not supported: a Git LFS pointer, a web page, a
+/// format of another kind of program.
 ///
-/// For readers of other files, which can then name the true cause.
+/// Readers of other files use it to name the cause of an error.
 pub fn foreign_kind(bytes: &[u8]) -> Option<&'static str> {
     match recognise(bytes) {
         Content::Foreign(kind, _) => Some(kind),

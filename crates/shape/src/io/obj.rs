@@ -1,6 +1,6 @@
-//! Wavefront OBJ: vertices and faces; everything else is passed over.
+//! Wavefront OBJ: vertices and faces; everything else is ignored.
 //!
-//! Read by hand: the crates for it report neither lines nor the value found.
+//! The parser is our own, because the available crates report neither lines nor the value found.
 
 use nalgebra::Point3;
 

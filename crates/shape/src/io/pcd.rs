@@ -1,6 +1,7 @@
 //! PCD of the Point Cloud Library: ASCII, binary and compressed.
 //!
-//! Read by hand: the crate for it reserves whatever size the file claims and trusts its layout.
+//! The parser is our own, because the available crate allocates the size that the file claims and
+//! does not check its layout.
 
 use nalgebra::Point3;
 
@@ -17,7 +18,7 @@ struct Field {
     size: usize,
     /// `F`, `I` or `U`.
     kind: u8,
-    /// Numbers a point.
+    /// Numbers per point.
     count: usize,
     /// Bytes before it in a point.
     offset: usize,
@@ -43,7 +44,7 @@ struct Header {
     start_line: usize,
 }
 
-/// Reads fields x, y and z of every point; other fields are passed over.
+/// Reads fields x, y and z of every point; other fields are ignored.
 pub(super) fn read(bytes: &[u8]) -> Result<Raw, LoadError> {
     let header = header(bytes)?;
     let body = &bytes[header.start..];
@@ -75,7 +76,7 @@ fn end(bytes: &[u8], expected: String) -> LoadError {
     LoadError::byte(Format::Pcd, bytes.len(), expected, found)
 }
 
-/// Lines up to DATA. Comments begin with `#`; unknown keys are passed over.
+/// Lines up to DATA. Comments begin with `#`; unknown keys are ignored.
 fn header(bytes: &[u8]) -> Result<Header, LoadError> {
     const EXPECTED: &str = "a PCD header: FIELDS, SIZE, TYPE, POINTS and DATA";
     let (mut names, mut sizes, mut kinds, mut counts) = (vec![], vec![], vec![], vec![]);
@@ -148,7 +149,7 @@ fn header(bytes: &[u8]) -> Result<Header, LoadError> {
     ))
 }
 
-/// Where x, y and z stand, and the bytes of a point; nothing if the lists do not fit together.
+/// The positions of x, y and z, and the bytes per point; `None` if the lists are inconsistent.
 fn layout(
     names: &[String],
     sizes: &[usize],
@@ -217,7 +218,7 @@ fn ascii(body: &[u8], header: &Header) -> Result<Vec<Point3<f64>>, LoadError> {
     Ok(points)
 }
 
-/// Points of data known to be long enough; `at` says where a field of a point begins.
+/// Points of data known to be long enough; `at` returns the offset of a field of a point.
 fn binary(data: &[u8], header: &Header, at: impl Fn(usize, &Field) -> usize) -> Vec<Point3<f64>> {
     let value = |i: usize, f: &Field| {
         let from = at(i, f);
@@ -229,7 +230,7 @@ fn binary(data: &[u8], header: &Header, at: impl Fn(usize, &Field) -> usize) -> 
         .collect()
 }
 
-/// A little-endian number of a type and size that [`layout`] lets pass.
+/// A little-endian number of a type and size that [`layout`] accepts.
 fn scalar(bytes: &[u8], kind: u8) -> f64 {
     let mut word = [0; 8];
     word[..bytes.len()].copy_from_slice(bytes);

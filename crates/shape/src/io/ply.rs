@@ -1,6 +1,7 @@
 //! PLY: text and both binary orders, with any further elements and properties.
 //!
-//! Read by hand: the crates for it refuse names, types and layouts that programs write.
+//! The parser is our own, because the available crates refuse names, types and layouts that occur
+//! in files.
 
 use nalgebra::Point3;
 
@@ -221,7 +222,7 @@ fn pass_over(body: &mut Body, property: &Property) -> Result<(), LoadError> {
     }
 }
 
-/// Passes over a row.
+/// Skips a row.
 fn other(body: &mut Body, element: &Element) -> Result<(), LoadError> {
     let mut properties = element.properties.iter();
     properties.try_for_each(|property| pass_over(body, property))

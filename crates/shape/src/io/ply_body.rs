@@ -29,7 +29,7 @@ impl<'a> Body<'a> {
         self.bytes.len() - self.at
     }
 
-    /// Whether nothing but blanks is left, or the next number stands on a new line; bytes have no lines.
+    /// Whether only blanks are left or the next number is on a new line; false for binary data.
     pub(super) fn at_line_end(&self) -> bool {
         if self.encoding != Encoding::Text {
             return true;
@@ -82,7 +82,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Passes over a number that nobody needs, whatever it is.
+    /// Skips a number of any value.
     pub(super) fn skip(&mut self, scalar: Scalar, expected: &str) -> Result<(), LoadError> {
         if self.encoding == Encoding::Text {
             let found = self.word().is_some();
@@ -95,7 +95,7 @@ impl<'a> Body<'a> {
         self.raw(scalar, expected).map(drop)
     }
 
-    /// Passes over the rest of a list. Costs no more than the bytes that are there.
+    /// Skips the rest of a list, in a time linear in the bytes that exist.
     pub(super) fn skip_list(
         &mut self,
         count: i64,

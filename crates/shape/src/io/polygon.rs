@@ -10,9 +10,9 @@ const FOLDED: f64 = 1e-9;
 
 /// Cuts a polygon into triangles; `false` if it is concave and has more than [`MAX_CONCAVE`] corners.
 ///
-/// A polygon that its first corner sees as a whole, such as a convex one, becomes the fan of that
-/// corner. Another one loses an ear at a time (Meisters 1975), seen along the normal of its area.
-/// `corners` are indices of `vertices`.
+/// A polygon that is star-shaped from its first corner, such as a convex one, becomes the fan of
+/// that corner. Other polygons are cut by ear clipping (Meisters 1975) in the projection along the
+/// normal of their area. `corners` are indices of `vertices`.
 pub(super) fn cut(
     corners: &[u32],
     vertices: &[Point3<f64>],

@@ -1,4 +1,4 @@
-//! Which columns of a table are x, y and z, by their names.
+//! Finds the columns x, y and z of a table by their names.
 
 /// Words of names that mean a position.
 const POSITION: [&str; 13] = [

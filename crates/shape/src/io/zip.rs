@@ -24,9 +24,9 @@ const POINTS: [&str; 12] = [
     "coords",
     "arr_0",
 ];
-/// An array is unpacked to at most so many times its packed size.
+/// Largest ratio of the unpacked to the packed size of an array.
 const MOST_PER_BYTE: usize = 200;
-/// So many arrays are looked at where none has a name of points.
+/// Largest number of arrays that are examined if none has a known name.
 const MOST_ARRAYS: usize = 100;
 const END: u32 = 0x0605_4b50;
 const ENTRY: u32 = 0x0201_4b50;

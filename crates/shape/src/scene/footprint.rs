@@ -1,4 +1,4 @@
-//! Which points near a plane are the object's foot, and which are the support.
+//! Separates the points near a plane into the object's foot and the support.
 //!
 //! The plane is cut into squares. Above a point of the foot of a solid, a vertical line leaves the solid
 //! and so meets an odd number of layers of points; above a point of the support it meets an even number:
@@ -23,7 +23,7 @@ const WALL: f64 = 6.0;
 /// at most so many spacings away count.
 const WALL_FOOT: f64 = 4.0;
 const WALL_NEAR: f64 = 3.0;
-/// A point so many spacings outside of the wall still belongs to it.
+/// A point at most this many spacings outside the wall still belongs to it.
 const WALL_SLACK: f64 = 0.25;
 /// Most squares.
 const MOST_SQUARES: f64 = 4e6;
@@ -40,7 +40,7 @@ const LEAST_ROUND: f64 = 0.85;
 const LEAST_FOOT: usize = 60;
 const DENSER: f64 = 1.2;
 
-/// What must be seen of a plane.
+/// The evidence that a plane needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Evidence {
     /// Points beyond the object or below its underside.
@@ -172,8 +172,8 @@ impl Footprint {
 
     /// The foot as dense as the rest of the object.
     ///
-    /// Where the foot is denser, the support shows through it: in each square the highest points are kept,
-    /// since a foot is never below the support.
+    /// Where the foot is denser, it includes points of the support. In each square the highest
+    /// points are kept, since a foot is never below the support.
     fn thinned(&self, points: &[Point3<f64>], above: &[usize], foot: Vec<usize>) -> Vec<usize> {
         let even: Vec<usize> = (foot.iter().copied())
             .filter(|i| self.label_at(*i) == Some(Label::Foot))

@@ -47,7 +47,8 @@ pub(super) fn connected(
         groups[forest.root(number)].extend(inside);
     }
     groups.retain(|group| !group.is_empty());
-    // The lowest point along x, then y, then z breaks ties, so that the order of the points does not.
+    // Ties are broken by the lowest point along x, then y, then z, so that the result does not
+    // depend on the order of the points.
     let lowest = |group: &Vec<usize>| {
         let points = group.iter().map(|i| places[*i]);
         let before = |a: &Point3<f64>, b: &Point3<f64>| {

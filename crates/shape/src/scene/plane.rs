@@ -23,7 +23,8 @@ const BELONGS: (f64, f64) = (3.0, 4.0);
 const LEAST_TOLERANCE: f64 = 0.3;
 /// Largest of that distance while a plane grows, in spacings of the sample.
 const MOST_TOLERANCE: f64 = 2.0;
-/// The standard deviation along the plane is at least this many times that across: no bent sheet.
+/// The standard deviation along the plane is at least this many times that across it, which
+/// excludes curved sheets.
 const FLAT: f64 = 20.0;
 /// Share of the points that a support holds at least, and share that stands on it.
 const LEAST_SHARE: f64 = 0.04;
@@ -97,8 +98,8 @@ pub(super) fn visible_support(
     None
 }
 
-/// The object above a candidate, after the plane has been fitted again to its points away from the object:
-/// the foot of the object would lift it.
+/// The object above a candidate, after the plane has been fitted again to its points away from the
+/// object, because points of the foot would raise it.
 fn separated(
     points: &[Point3<f64>],
     candidate: &Candidate,
