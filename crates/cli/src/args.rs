@@ -87,7 +87,7 @@ pub(crate) enum Command {
     /// Improve the quality of grasps by moving their contacts over the surface.
     #[command(after_help = "Example: moduli ascend scan.shape out/grasps.json -o better.json")]
     Ascend(AscendOptions),
-    /// Carry grasps from one object over to another.
+    /// Transfer grasps from one object to another.
     #[command(
         after_help = "Example: moduli transfer --from mug.shape --to cup.shape mug_grasps.json -o cup_grasps.json"
     )]
@@ -106,7 +106,7 @@ pub(crate) enum Command {
         after_help = "Example: moduli grasp scan.ply -o out\nExample: moduli grasp scan.ply --unit mm --convention openrave -o out\nExample: moduli grasp mug.ply bottle.ply --library mine -o out"
     )]
     Grasp(GraspOptions),
-    /// Keep own known objects, from which `moduli grasp --library` transfers.
+    /// Manage a library of your own known objects, from which `moduli grasp --library` transfers.
     #[command(
         subcommand,
         after_help = "Example: moduli library add mine mug.ply && moduli grasp scan.ply --library mine"
@@ -192,7 +192,7 @@ impl Unit {
     }
 }
 
-/// How contacts become wrenches, and how these are measured.
+/// The convention of quality.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ConventionOptions {
     /// Convention: paper, graspit, dexnet, frogger, openrave or unit. Default: that of the grasps.json

@@ -1,4 +1,4 @@
-//! What can go wrong, and with which exit code.
+//! Failures and their exit codes.
 
 use std::fmt::Display;
 use std::path::Path;
@@ -10,17 +10,17 @@ use crate::files;
 #[derive(Debug)]
 pub(crate) struct Failure {
     code: u8,
-    /// One sentence for people: what, where, what was expected.
+    /// One sentence: what, where, what was expected.
     pub(crate) message: String,
 }
 
 impl Failure {
-    /// The command line asks for something that cannot be.
+    /// The command line is invalid.
     pub(crate) fn usage(message: impl Into<String>) -> Self {
         Self::new(2, message)
     }
 
-    /// A file is not what it should be.
+    /// A file is invalid.
     pub(crate) fn input(path: &Path, reason: impl Display) -> Self {
         if files::is_standard_input(path) {
             return Self::new(3, format!("standard input: {reason}"));
@@ -28,7 +28,7 @@ impl Failure {
         Self::new(3, format!("{}: {reason}", path.display()))
     }
 
-    /// The numbers refuse: no valid surface, no closed grasp.
+    /// Refused on numerical grounds: no valid surface, no closed grasp.
     pub(crate) fn refused(message: impl Into<String>) -> Self {
         Self::new(4, message)
     }
@@ -50,7 +50,7 @@ impl Failure {
         }
     }
 
-    /// What is left to say when some of several inputs failed; the exit code of the first.
+    /// The summary when some of several inputs failed, with the exit code of the first.
     pub(crate) fn all(failures: Vec<Self>) -> Result<(), Self> {
         let Some(code) = failures.first().map(|f| f.code) else {
             return Ok(());

@@ -1,4 +1,4 @@
-//! Hands: a built-in one, or a URDF with its TOML.
+//! Hands: a built-in hand, or a URDF with its TOML.
 
 pub(crate) mod findings;
 pub(crate) mod page;
@@ -49,7 +49,7 @@ pub(crate) fn built_in(options: &HandOptions) -> Result<Option<Hand>, Failure> {
     Ok(Some(hand))
 }
 
-/// A bare word that is no file is the name of a hand that does not exist.
+/// A word that is not the name of a file or of a built-in hand.
 fn check_named(hand: &Path) -> Result<(), Failure> {
     let bare = hand.extension().is_none() && hand.components().count() == 1;
     if bare && !hand.exists() {

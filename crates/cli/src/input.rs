@@ -35,24 +35,24 @@ pub(crate) fn table(path: &Path, columns: usize) -> Result<Table, Failure> {
     Table::from_npy_with_columns(&read(path)?, columns).map_err(|e| Failure::input(path, e))
 }
 
-/// A readable name for what a file holds.
+/// The object's name for a file.
 pub(crate) fn stem(path: &Path) -> String {
     let stem = path.file_stem().filter(|_| !files::is_standard_input(path));
     stem.map_or_else(|| "object".to_owned(), |s| s.to_string_lossy().into_owned())
 }
 
-/// A cloud as a file holds it.
+/// A cloud read from a file.
 pub(crate) struct Scan {
     /// Its points, metres.
     pub(crate) cloud: PointCloud,
-    /// What was dropped and what looks wrong, a sentence each.
+    /// Warnings: dropped rows and implausible values, one sentence each.
     pub(crate) warnings: Vec<String>,
 }
 
 /// A cloud in metres. Its warnings go to standard error too.
 ///
-/// A mesh is sampled by area; the same seed gives the same points. Where no unit was given, an extent
-/// that no object for a hand has is refused.
+/// A mesh is sampled by area; the same seed gives the same points. If no unit was given, an
+/// implausible extent is refused.
 pub(crate) fn scan(path: &Path, options: &CloudOptions, seed: u64) -> Result<Scan, Failure> {
     let mut loaded = load(path)?;
     match options.unit {
@@ -90,7 +90,7 @@ pub(crate) fn loaded(path: &Path, bytes: &[u8]) -> Result<Loaded, Failure> {
     shape::io::read_cloud(bytes, extension).map_err(|e| Failure::input(path, e))
 }
 
-/// The object among the points of a scan. What is new to say goes to standard error; all warnings are in
+/// The object among the points of a scan. New warnings go to standard error; all are in
 /// [`moduli::FitReport`]. Refusals say what to try.
 pub(crate) fn fitted(
     scan: &Scan,
@@ -114,7 +114,7 @@ pub(crate) fn fitted(
     Ok(made)
 }
 
-/// The points of the object in a scan, and what is to be said about the file and the scene.
+/// The points of the object in a scan, and warnings about the file and the scene.
 pub(crate) fn isolated(scan: Scan, name: &str, options: &CloudOptions) -> Result<Scan, Failure> {
     let settings = options.scene.settings();
     let (cloud, scene) =
@@ -162,7 +162,7 @@ pub(crate) fn directions(path: &Path) -> Result<Vec<Direction>, Failure> {
     for (row, v) in table.rows().enumerate() {
         let v = Vector3::new(v[0], v[1], v[2]);
         let length = v.norm();
-        // Written so that NaN fails too.
+        // The negated comparison also refuses NaN.
         if !((length - 1.0).abs() <= UNIT_TOLERANCE) {
             return Err(Failure::input(
                 path,

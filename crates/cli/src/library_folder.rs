@@ -56,7 +56,8 @@ pub(crate) fn read(folder: &Path) -> Result<LibraryFolder, Failure> {
     Ok(LibraryFolder { objects, warnings })
 }
 
-/// A stored object whose surface is proved again and whose grasps are whole; what is wrong otherwise.
+/// A stored object, after its surface is certified again and its grasps are checked; otherwise what
+/// is wrong.
 fn object(path: &Path) -> Result<LibraryObjectRecord, String> {
     let bytes = input::read(path).map_err(|e| e.message)?;
     let stored = LibraryObjectRecord::from_bytes(&bytes).map_err(|e| e.to_string())?;
@@ -70,7 +71,7 @@ fn object(path: &Path) -> Result<LibraryObjectRecord, String> {
     Ok(stored)
 }
 
-/// The built-in library with the objects of a folder, and what is to be said about damaged files.
+/// The built-in library with the objects of a folder, and warnings about damaged files.
 pub(crate) fn beside_builtin(folder: Option<&Path>) -> Result<(Library, Vec<String>), Failure> {
     let mut library = Library::builtin().clone();
     let Some(folder) = folder else {

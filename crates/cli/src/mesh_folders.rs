@@ -1,4 +1,4 @@
-//! Meshes that a URDF names, read from the folders that the user gave and nowhere else.
+//! Meshes that a URDF names, read only from the folders that the user gave.
 
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,7 @@ const LEVELS: usize = 6;
 pub(crate) struct MeshFolders {
     urdf: PathBuf,
     root: PathBuf,
-    /// Whether the user gave the root; then packages are looked for nowhere else.
+    /// Whether the user gave the root; then packages are looked for only there.
     given: bool,
 }
 
@@ -45,9 +45,12 @@ impl MeshFolders {
 
     /// The bytes of a mesh by its name in the URDF.
     ///
-    /// `package://NAME/REST` is NAME/REST or REST under the root, or, where no root is given, REST in
-    /// the package that holds the URDF or lies beside it; other names are relative to the URDF.
-    /// Errors: a name that leads out of these folders, by `..` or by a link too; no file.
+    ///
+    /// `package://NAME/REST` is NAME/REST or REST under the root, or, where no root is given, REST
+    /// in the package that holds the URDF or lies beside it; other names are relative to the URDF.
+    /// # Errors
+    ///
+    /// The name leads out of these folders, also by `..` or by a link, or there is no such file.
     pub(crate) fn bytes(&self, name: &str) -> Result<Vec<u8>, String> {
         let places = self.places(name);
         let found = places
@@ -92,7 +95,7 @@ impl MeshFolders {
             let path = self.urdf.join(name.strip_prefix("file://").unwrap_or(name));
             return vec![(self.urdf.clone(), path)];
         };
-        // Joining an absolute path would forget the folder.
+        // Joining an absolute path would discard the folder.
         let under = |folder: &Path| folder.join(rest.trim_start_matches('/'));
         let mut places = vec![
             (self.root.clone(), under(&self.root.join(package))),

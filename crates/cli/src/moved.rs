@@ -1,4 +1,4 @@
-//! Grasps that are moved: as they were given, where they ended, and as they are written.
+//! Grasps that are moved: the start, the end, and the records.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use sph::Direction;
 use crate::failure::Failure;
 use crate::{input, output};
 
-/// Contacts farther than this from the surface, in metres, are worth a warning.
+/// Distance of a contact from the surface above which a warning is given, metres.
 const FAR: f64 = 5e-3;
 
 /// The grasps of a grasps.json in the frame of an object's cloud, as directions.
@@ -70,7 +70,7 @@ pub(crate) struct Given {
     pub(crate) source: SourceRecord,
 }
 
-/// A grasp where it ended.
+/// A grasp at its end.
 pub(crate) struct Moved {
     pub(crate) directions: Vec<Direction>,
     pub(crate) start_quality: f64,
@@ -83,7 +83,7 @@ pub(crate) struct Moved {
     pub(crate) steps: Vec<TraceStep>,
 }
 
-/// One state on the way.
+/// One state of the motion.
 #[derive(Serialize)]
 pub(crate) struct TraceStep {
     /// Parameter of the curve of shapes; 1 on the target, and throughout an ascent.
@@ -91,7 +91,7 @@ pub(crate) struct TraceStep {
     /// Contacts on the surface of that parameter, in the frame of the target's cloud.
     contacts_m: Vec<[f64; 3]>,
     quality: f64,
-    /// Slope of the quality that is left, per radian.
+    /// Stationarity: the remaining slope of the quality, per radian.
     stationarity: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What `ascend` and `transfer` share: grasps moved one by one, the files, the words.
+//! The common part of `ascend` and `transfer`: moving the grasps, the files and the table.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -19,20 +19,20 @@ const TRACE_VERSION: u32 = 1;
 /// Rows of the table on standard output.
 const SHOWN: usize = 20;
 
-/// A way of moving grasps to where they end.
+/// A method of moving grasps.
 pub(crate) struct Movement<'a> {
-    /// What the progress bar says.
+    /// The text of the progress bar.
     pub(crate) doing: &'static str,
     /// Its name in results.
     pub(crate) scheme: &'static str,
-    /// Quality on the object on which the grasps end.
+    /// Quality on the target object.
     pub(crate) measure: &'a Measure<'a>,
     /// When the work began.
     pub(crate) start: Instant,
 }
 
-/// Moves grasps over the threads; of several failures the one of the first grasp is returned, so
-/// that threads do not decide which.
+/// Moves grasps in parallel. Of several failures the one of the first grasp is returned, so that
+/// the result does not depend on the threads.
 pub(crate) fn move_all(
     grasps: &[Given],
     one: impl Fn(usize, &Given) -> Result<Moved, Failure> + Sync,
@@ -46,7 +46,7 @@ pub(crate) fn move_all(
 }
 
 impl Movement<'_> {
-    /// Moves all grasps over the threads, writes the files and says what happened; refuses when no
+    /// Moves all grasps in parallel, writes the files and prints the result. It is an error if no
     /// grasp is closed.
     pub(crate) fn run(
         &self,

@@ -1,4 +1,4 @@
-//! What became of hand poses, in words.
+//! The outcomes of hand poses, in words.
 
 use hand::{Geometry, Hand, OutcomeCounts, Rejection, TipModel};
 
@@ -20,13 +20,13 @@ pub(crate) fn sentence(outcomes: &OutcomeCounts) -> String {
     )
 }
 
-/// Poses that gave no stable grasp, by reason; all reasons, also those that did not occur.
+/// The number of poses without a stable grasp, by reason, including reasons that did not occur.
 pub(crate) fn reasons(outcomes: &OutcomeCounts) -> Vec<(&'static str, usize)> {
     let unstable = std::iter::once(("unstable", outcomes.unstable));
     outcomes.by_reason().into_iter().chain(unstable).collect()
 }
 
-/// Why no pose gave a stable grasp: the commonest reason, where, and what to try.
+/// Why no pose gave a stable grasp: the most frequent reason, its place, and what to try.
 pub(crate) fn why_none(outcomes: &OutcomeCounts, hand: &Hand, tips: TipModel) -> String {
     let counts = reasons(outcomes);
     let Some((reason, count)) = counts.iter().max_by_key(|(_, count)| *count) else {
@@ -65,7 +65,8 @@ pub(crate) fn why_none(outcomes: &OutcomeCounts, hand: &Hand, tips: TipModel) ->
     )
 }
 
-/// Where a link that came too near is made of meshes: what their convex hulls may do.
+/// A note for a link that came too near and consists of meshes: their convex hulls may be the
+/// cause.
 fn filling_hull(hand: &Hand, rejection: &Rejection) -> Option<String> {
     let (Rejection::BaseNearObject { link } | Rejection::PartNearObject { link }) = rejection
     else {

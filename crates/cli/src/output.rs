@@ -1,4 +1,4 @@
-//! Where words and files leave the program.
+//! Output of the program: lines of text and files.
 
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
@@ -13,8 +13,8 @@ use crate::files;
 
 /// A line of the result.
 ///
-/// A reader that has seen enough (`moduli … | head`) stops nothing: the files are still to be
-/// written. Where the line cannot be written for another reason, the program ends.
+/// A closed pipe (`moduli … | head`) is no error, because files are still to be written. If the
+/// line cannot be written for another reason, the program ends.
 pub(crate) fn say(line: impl AsRef<str>) {
     match writeln!(std::io::stdout().lock(), "{}", line.as_ref()) {
         Ok(()) => {}
@@ -53,17 +53,17 @@ pub(crate) fn npy(columns: usize, values: Vec<f64>) -> Result<Vec<u8>, Failure> 
         .ok_or_else(|| Failure::other(format!("{count} numbers do not fill rows of {columns}")))
 }
 
-/// Something the user should know, that stops nothing.
+/// A warning on standard error.
 pub(crate) fn warn(line: impl AsRef<str>) {
     tell(&format!("warning: {}", line.as_ref()));
 }
 
-/// The last words of a program that failed.
+/// The message of a program that failed.
 pub(crate) fn report_failure(failure: &Failure) {
     tell(&format!("error: {}", failure.message));
 }
 
-/// A bar on a terminal, nothing elsewhere.
+/// A progress bar on a terminal, nothing elsewhere.
 pub(crate) fn progress(quiet: bool, total: usize, what: &str) -> ProgressBar {
     if quiet || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
@@ -76,7 +76,7 @@ pub(crate) fn progress(quiet: bool, total: usize, what: &str) -> ProgressBar {
     bar
 }
 
-/// Writes a whole result; what the program has read is never overwritten.
+/// Writes a whole result. A file that the program has read is never overwritten.
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     Ok(run::write(path, bytes, &files::read_so_far())?)
 }

@@ -12,7 +12,7 @@ use crate::failure::Failure;
 
 /// The paper's mesh: 10,000 vertices.
 const MESH: usize = 100;
-/// Grasps that are drawn with their hand.
+/// Number of grasps that are drawn with their hand.
 const HANDS: usize = 12;
 
 /// The whole page, in the frame of the cloud; `more` are lines at the end of its head.

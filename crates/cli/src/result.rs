@@ -79,7 +79,7 @@ impl Written {
         output::say("");
     }
 
-    /// Where everything is.
+    /// The paths of the files.
     pub(crate) fn print_paths(&self) {
         for path in [&self.grasps_json, &self.grasps_yaml, &self.index_html] {
             output::say(path.display().to_string());

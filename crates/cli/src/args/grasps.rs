@@ -42,9 +42,9 @@ pub(crate) struct QualityOptions {
 pub(crate) enum Metric {
     /// Radius of the largest ball about 0 in the hull of all wrenches, with a proved interval.
     Epsilon,
-    /// The same when the force of each contact is bounded by itself instead of their sum.
+    /// The same if the force of each contact is bounded separately instead of their sum.
     Linf,
-    /// The largest weight that every edge can keep in a balance (polygonal cones only).
+    /// The largest weight that every edge can have in an equilibrium (polygonal cones only).
     MinWeight,
     /// The least friction coefficient at which the grasp is force-closed.
     FrictionNeeded,
@@ -74,7 +74,7 @@ pub(crate) enum AscentScheme {
     Paper,
 }
 
-/// Under which convention grasps are moved, and where the result goes.
+/// The convention and the files of the result.
 #[derive(Debug, Args)]
 pub(crate) struct MoveOptions {
     /// File for the resulting grasps, as grasps.json in the frame of the cloud of their shape.
@@ -87,7 +87,7 @@ pub(crate) struct MoveOptions {
     pub(crate) convention: ConventionOptions,
 }
 
-/// Limits that every grasp must respect.
+/// Constraints on every grasp.
 #[derive(Debug, Args)]
 pub(crate) struct LimitOptions {
     /// Least distance between any two contacts, millimetres.
@@ -112,7 +112,7 @@ pub(crate) struct AscendOptions {
     /// A grasps.json in the frame of the shape's cloud. Contacts are projected to the surface along
     /// their direction from the centre.
     pub(crate) grasps: PathBuf,
-    /// How the quality is raised.
+    /// Method of the ascent.
     #[arg(long, value_enum, default_value_t = AscentScheme::Ours)]
     pub(crate) scheme: AscentScheme,
     #[command(flatten)]
@@ -123,7 +123,7 @@ pub(crate) struct AscendOptions {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum TransferScheme {
-    /// Adaptive stations, monotone ascents, and a second search where the end is poor.
+    /// Adaptive stations, monotone ascents, and a second search if the final quality is low.
     Ours,
     /// The paper's scheme: eleven stations with 100 fixed steps each.
     Paper,
@@ -138,16 +138,16 @@ pub(crate) struct TransferOptions {
     /// resumed.
     #[arg(long, value_name = "SHAPE", required = true)]
     pub(crate) from: Vec<PathBuf>,
-    /// The shape that the grasps are carried to; can be given several times.
+    /// The shape that the grasps are transferred to; can be given several times.
     #[arg(long, value_name = "SHAPE", required = true)]
     pub(crate) to: Vec<PathBuf>,
     /// A grasps.json per --from, in the frame of the cloud of that shape.
     #[arg(required = true)]
     pub(crate) grasps: Vec<PathBuf>,
-    /// How grasps are carried over.
+    /// Method of the transfer.
     #[arg(long, value_enum, default_value_t = TransferScheme::Ours)]
     pub(crate) scheme: TransferScheme,
-    /// Search for better results even where the first one is good; about seven times slower.
+    /// Search for better results even if the first one is good; about seven times slower.
     #[arg(long)]
     pub(crate) thorough: bool,
     #[command(flatten)]

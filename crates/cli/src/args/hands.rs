@@ -17,11 +17,11 @@ pub(crate) struct HandOptions {
     /// `robotiq_2f85`, a gripper of the 2F-85 kind), or the URDF of another hand.
     #[arg(long, value_name = "NAME|URDF", default_value = "sdh")]
     pub(crate) hand: PathBuf,
-    /// TOML that says how the hand is used; by default the one beside the URDF, with the same name.
+    /// TOML spec of the hand; by default the one beside the URDF, with the same name.
     #[arg(long, value_name = "TOML")]
     pub(crate) spec: Option<PathBuf>,
-    /// Folder in which `package://` meshes are found; by default that of the URDF and the packages that
-    /// hold it or lie beside it.
+    /// Folder in which `package://` meshes are found; by default the folder of the URDF and the
+    /// packages that contain it or are next to it.
     #[arg(long, value_name = "DIR")]
     pub(crate) package_root: Option<PathBuf>,
 }
@@ -87,10 +87,10 @@ pub(crate) enum HandCommand {
 pub(crate) struct HandCheckOptions {
     /// The URDF, or the name of a built-in hand: `sdh`, `panda` or `robotiq_2f85`.
     pub(crate) urdf: PathBuf,
-    /// TOML that says how the hand is used; by default the one beside the URDF, with the same name.
+    /// TOML spec of the hand; by default the one beside the URDF, with the same name.
     pub(crate) spec: Option<PathBuf>,
-    /// Folder in which `package://` meshes are found; by default that of the URDF and the packages that
-    /// hold it or lie beside it.
+    /// Folder in which `package://` meshes are found; by default the folder of the URDF and the
+    /// packages that contain it or are next to it.
     #[arg(long, value_name = "DIR")]
     pub(crate) package_root: Option<PathBuf>,
     /// File for the page; out/NAME/hand.html by default.
@@ -118,8 +118,8 @@ pub(crate) struct GraspOptions {
     /// folder that holds a folder per cloud, out by default.
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
-    /// Folder with known objects of your own, as `moduli library add` makes it. They are used beside the
-    /// built-in ones.
+    /// Folder with your own known objects, as `moduli library add` makes it. They are used in
+    /// addition to the built-in ones.
     #[arg(long, value_name = "DIR")]
     pub(crate) library: Option<PathBuf>,
     #[command(flatten)]

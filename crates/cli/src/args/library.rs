@@ -15,8 +15,7 @@ pub(crate) enum LibraryCommand {
     /// replaced.
     #[command(after_help = "Example: moduli library add mine mug.ply bottle.ply")]
     Add(LibraryAddOptions),
-    /// The same for many objects, without those that are up to date: an interrupted run goes on where it
-    /// was.
+    /// The same for many objects, except those that are up to date: an interrupted run is resumed.
     #[command(after_help = "Example: moduli library build mine scans/*.ply --poses 700")]
     Build(LibraryAddOptions),
     /// Remove objects from a library.
@@ -32,7 +31,7 @@ pub(crate) struct LibraryListOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct LibraryAddOptions {
-    /// Folder of the library; it is made where needed.
+    /// Folder of the library; it is created if it does not exist.
     pub(crate) folder: PathBuf,
     /// Clouds or meshes. The name of the file names the object.
     #[arg(required = true)]

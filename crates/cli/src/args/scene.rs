@@ -1,10 +1,10 @@
-//! Options about what in a cloud is the object.
+//! Options for finding the object in a cloud.
 
 use clap::{Args, ValueEnum};
 use moduli::nalgebra::{UnitVector3, Vector3};
 use moduli::{SceneSettings, Support, SupportRule};
 
-/// What in a cloud is the object, and when its surface is accepted.
+/// How the object is found in a cloud, and when its surface is accepted.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct SceneOptions {
     /// How the object is found in the cloud: `auto` removes a visible support plane, rows that stand for

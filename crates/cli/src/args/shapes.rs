@@ -27,8 +27,8 @@ pub(crate) struct FitOptions {
     /// Kind of surface.
     #[arg(long, value_enum, default_value_t = Model::Radial)]
     pub(crate) model: Model,
-    /// For the spherical model: the place of each point on the sphere, as unit vectors, N×3 in .npy.
-    /// Without it the places are found.
+    /// For the spherical model: the direction of each point on the sphere, as unit vectors, N×3 in
+    /// .npy. Without it the directions are computed.
     #[arg(long, value_name = "U.npy")]
     pub(crate) directions: Option<PathBuf>,
     #[command(flatten)]

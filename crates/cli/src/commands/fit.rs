@@ -118,7 +118,7 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Fail
         surface_rms_m: report.acceptance.map(|a| a.surface_rms_m),
         r_min_certified_m: r_min,
         r_max_certified_m: r_max,
-        // A shape that is not cannot be made: `fit` has refused before.
+        // Always true: `fit` refuses other shapes.
         in_m_rad: r_min > 0.0,
         condition: fit.condition,
         outliers: fit.outliers.len() + isolated,

@@ -23,7 +23,7 @@ use crate::outcomes::{reasons, sentence, why_none};
 use crate::result::Written;
 use crate::{hands, input, library_folder, output, page, result};
 
-/// The built-in object that stands for "never seen before".
+/// The built-in object that is not in the library.
 const UNSEEN: &str = "U1";
 
 #[derive(Serialize)]
@@ -37,9 +37,9 @@ struct GraspLine {
     neighbours: Vec<String>,
     transferred: usize,
     transferred_closed: usize,
-    /// With a hand, whether it meets the contacts or makes others near them.
+    /// Grasps with a hand, whose contacts are the transferred ones or others near them.
     transferred_with_hand: usize,
-    /// Of these, those whose contacts the hand meets.
+    /// Those of them whose contacts are the transferred ones.
     transferred_met: usize,
     /// Grasps of the library left out, because they have another number of contacts than the hand has
     /// fingers.
@@ -105,14 +105,14 @@ fn folders(options: &GraspOptions) -> Result<Vec<PathBuf>, Failure> {
     Ok(folders)
 }
 
-/// What all clouds of one call have in common.
+/// The settings that all clouds of one call share.
 struct Shared<'a> {
     options: &'a GraspOptions,
     common: &'a Common,
     convention: Convention,
     hand: Hand,
     library: Library,
-    /// What is to be said about the library.
+    /// Warnings about the library.
     warnings: Vec<String>,
 }
 

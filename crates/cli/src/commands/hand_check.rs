@@ -1,4 +1,4 @@
-//! `moduli hand check`: what is wrong with a hand's files, and how the hand looks.
+//! `moduli hand check`: findings about a hand's files, and pictures of the hand.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -86,7 +86,7 @@ pub(crate) fn run(options: &HandCheckOptions, common: &Common) -> Result<(), Fai
     verdict(&checked, &files)
 }
 
-/// What two fingers need to hold anything.
+/// Advice for hands with two fingers.
 fn two_fingers(hand: &Hand, tips: TipModel, files: &HandOptions) -> Option<Finding> {
     if hand.fingers().len() > 2 {
         return None;
@@ -118,7 +118,7 @@ fn two_fingers(hand: &Hand, tips: TipModel, files: &HandOptions) -> Option<Findi
     })
 }
 
-/// A hand that cannot grasp a ball is worth a word.
+/// A warning if the hand cannot grasp a ball.
 fn no_grasp(hand: &Hand, tried: &Trial, tips: TipModel, files: &HandOptions) -> Option<Finding> {
     (tried.outcomes.stable == 0).then(|| Finding {
         severity: "warning",

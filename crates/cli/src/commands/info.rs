@@ -74,7 +74,7 @@ fn facts(path: &Path) -> Result<Vec<Fact>, Failure> {
 fn shape_facts(record: &ShapeRecord) -> Result<Vec<Fact>, moduli::records::StoredShapeError> {
     let shape = stored_shape(record)?;
     let (low, high) = shape.tight_radius_bounds(1e-3);
-    // Rounded outward: what is printed is proved as well.
+    // Rounded outward, so that the printed bounds are proved too.
     let (low_mm, high_mm) = ((1e6 * low).floor() / 1e3, (1e6 * high).ceil() / 1e3);
     let volume = shape.mass_properties().volume;
     let (rms, lambda) = (record.rms_m, record.lambda);

@@ -113,7 +113,7 @@ fn remove(options: &LibraryRemoveOptions, common: &Common) -> Result<(), Failure
     Failure::all(failures)
 }
 
-/// Puts objects into a folder; with `resume`, those that are up to date stay as they are.
+/// Writes objects to a folder; with `resume`, those that are up to date are kept.
 fn add(options: &LibraryAddOptions, common: &Common, resume: bool) -> Result<(), Failure> {
     let targets: Vec<_> = options
         .clouds
@@ -134,7 +134,7 @@ fn add(options: &LibraryAddOptions, common: &Common, resume: bool) -> Result<(),
     Failure::all(failures)
 }
 
-/// Everything that the objects have in common.
+/// The settings that all objects share.
 struct Maker<'a> {
     options: &'a LibraryAddOptions,
     common: &'a Common,
@@ -244,7 +244,7 @@ impl<'a> Maker<'a> {
     }
 }
 
-/// The object in a file, where it is whole and made from the same as `key` says.
+/// The object in a file, if it is undamaged and its key is `key`.
 fn stored(target: &Path, key: &Key) -> Option<LibraryObjectRecord> {
     let bytes = std::fs::read(target).ok()?;
     let object = LibraryObjectRecord::from_bytes(&bytes).ok()?;

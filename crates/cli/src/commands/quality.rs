@@ -175,7 +175,7 @@ impl Row {
     }
 }
 
-/// Contacts farther apart than any hand spans, which are rather in millimetres.
+/// Distance of contacts above which they are probably in millimetres.
 fn unit_warning(grasps: &[Grasp]) -> Option<String> {
     const WIDEST: f64 = 2.0;
     let apart = |g: &Grasp| {
@@ -211,7 +211,7 @@ fn measure(
     path: &Path,
     row: impl Fn(&Grasp, &mut Workspace) -> Result<Row, moduli::Error> + Sync,
 ) -> Result<Vec<Row>, Failure> {
-    // Of several failures the first is returned, so that threads do not decide which.
+    // Of several failures the first is returned, so that the result does not depend on the threads.
     let chunks: Vec<Result<Vec<_>, Failure>> = grasps
         .par_chunks(CHUNK)
         .enumerate()

@@ -15,8 +15,8 @@ use crate::outcomes::{reasons, sentence, why_none};
 use crate::result::{self, Written};
 use crate::{hands, input, output};
 
-/// Power grasps begin nearer than the least stand-off of grasps with the tips, by up to this share of
-/// it: from farther away only tips arrive.
+/// Power grasps start nearer than the least stand-off of grasps with the tips, by up to this share
+/// of it, because from farther away only tips touch.
 const POWER_NEARER: f64 = 0.3;
 
 #[derive(Serialize)]
@@ -144,7 +144,7 @@ fn poses(
     })
 }
 
-/// What a run was and what it found.
+/// The settings and the result of a run.
 struct Run<'a> {
     measure: &'a Measure<'a>,
     hand: &'a Hand,

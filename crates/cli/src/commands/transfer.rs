@@ -21,7 +21,7 @@ use crate::moved::{Given, Moved, TraceStep, given};
 use crate::movement::Movement;
 use crate::{input, limits};
 
-/// How grasps are carried.
+/// The scheme of the transfer.
 enum Scheme {
     Ours(Continuation, Box<Constraints>),
     Paper,

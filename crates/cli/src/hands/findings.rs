@@ -1,4 +1,4 @@
-//! All that is wrong with a hand's two files, in one go.
+//! All faults of a hand's two files.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -18,10 +18,10 @@ use crate::mesh_folders::MeshFolders;
 
 /// Distance that parts of a hand should keep from each other, metres (Sec. IV-C of the paper).
 const SELF_CLEARANCE: f64 = 5e-3;
-/// Stands for a mesh that cannot be had, so that the rest can be looked at.
+/// Replaces a mesh that cannot be read, so that the rest can be checked.
 const STAND_IN: &[u8] = b"v 0 0 0\nv 0.001 0 0\nv 0 0.001 0\nv 0 0 0.001\n";
 
-/// One thing that the user should know.
+/// A finding.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Finding {
     /// `error`, `warning` or `note`.
@@ -52,7 +52,7 @@ impl Checked {
     }
 }
 
-/// Reads both files as far as they go; fails only on usage.
+/// Reads both files and collects all findings; fails only on wrong usage.
 pub(crate) fn check(options: &HandOptions) -> Result<Checked, Failure> {
     let mut checked = Checked {
         hand: None,
@@ -82,7 +82,7 @@ pub(crate) fn check(options: &HandOptions) -> Result<Checked, Failure> {
     Ok(checked)
 }
 
-/// The URDF with every mesh that cannot be had named, not only the first.
+/// The URDF. All meshes that cannot be read are named, not only the first.
 fn model(options: &HandOptions, checked: &mut Checked) -> Option<HandModel> {
     let urdf = &options.hand;
     let read = || -> Result<(Vec<u8>, MeshFolders), Failure> {

@@ -73,7 +73,7 @@ fn pictures(hand: &Hand, trial: &Trial) -> Result<Section, Failure> {
     })
 }
 
-/// The parts that no finger moves, and one part a finger.
+/// The parts that no finger moves, and one part per finger.
 fn drawn(hand: &Hand, joints: &[f64], named: bool) -> Result<Vec<Item>, Failure> {
     let meshes = hand_meshes(hand, joints).map_err(|e| Failure::other(e.to_string()))?;
     let mut fixed = Mesh::default();

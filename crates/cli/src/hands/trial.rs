@@ -1,4 +1,4 @@
-//! A hand tried on a ball: the easiest object there is.
+//! A trial of a hand on a ball, the easiest object.
 
 use grasp::Convention;
 use hand::{Hand, OutcomeCounts, TipModel};
@@ -10,13 +10,13 @@ use crate::failure::Failure;
 /// Poses tried.
 const POSES: usize = 200;
 
-/// What became of the poses.
+/// The outcomes of the poses.
 pub(crate) struct Trial {
     /// Diameter of the ball, metres.
     pub(crate) diameter: f64,
     pub(crate) ball: RadialShape,
     pub(crate) outcomes: OutcomeCounts,
-    /// By pre-shape, the best grasp.
+    /// The best grasp of each pre-shape.
     pub(crate) best: Vec<Option<HandPlacement>>,
 }
 

@@ -99,7 +99,8 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<WrappedLine, 
         lambda: object.lambda(),
         rms_m: object.rms(),
         max_abs_m,
-        // The points were moved to the nearest places of the surface, so both are one number.
+        // The directions of the points are those of the nearest surface points, so both numbers are
+        // equal.
         surface_rms_m: object.rms(),
         // A map that is not proved an immersion is refused by the fit.
         in_m_sph: true,
@@ -113,7 +114,7 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<WrappedLine, 
     })
 }
 
-/// What is proved, and where the proof failed.
+/// The result of the proof, and where it failed.
 fn verdict(fit: &SphericalCloudFit) -> (&'static str, Vec<String>) {
     let (first, second, gap) = match fit.embedding {
         Embedding::Proved { .. } => return ("proved", Vec::new()),

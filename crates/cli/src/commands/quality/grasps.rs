@@ -24,7 +24,7 @@ pub(super) struct GraspSet {
     pub(super) grasps: Vec<Grasp>,
     /// The convention that the file names.
     pub(super) rule: Option<Convention>,
-    /// What its contacts transmit.
+    /// The contact model of the file.
     pub(super) tips: TipModel,
     pub(super) warnings: Vec<String>,
 }
@@ -88,7 +88,7 @@ fn contacts_in(path: &Path, place: &str, columns: usize) -> Result<usize, Failur
     ))
 }
 
-/// Makes grasps of numbers, and counts the normals that it changed.
+/// Converts numbers to grasps, and counts the normals that were changed.
 struct Reader<'a> {
     path: &'a Path,
     adjusted: usize,
@@ -102,7 +102,7 @@ impl Reader<'_> {
         (count > 0).then_some(said).into_iter().collect()
     }
 
-    /// A normal that is unit up to one per cent, made unit.
+    /// The unit vector of a normal whose length is 1 to within one per cent.
     fn unit_normal(&mut self, normal: Vector3<f64>) -> UnitVector3<f64> {
         let excess = (normal.norm() - 1.0).abs();
         if excess <= NEARLY_UNIT {

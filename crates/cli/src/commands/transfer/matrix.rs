@@ -1,6 +1,6 @@
 //! Grasps of many objects, each carried to many others, a file for each pair of objects.
 //!
-//! A pair that is done is a file; a run that was interrupted does what is left.
+//! Each finished pair has a file; an interrupted run computes the remaining pairs.
 
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -50,11 +50,11 @@ struct Pair<'a> {
     /// How quality is measured.
     rule: &'a Convention,
     file: PathBuf,
-    /// Of everything that decides the result.
+    /// Digest of everything on which the result depends.
     key: Key,
 }
 
-/// What a file of a pair says.
+/// The content of a pair's file.
 #[derive(Clone, Serialize)]
 struct PairLine {
     from: String,
@@ -67,7 +67,7 @@ struct PairLine {
     best: f64,
 }
 
-/// Carries everything, going on where an earlier run into the same folder was interrupted.
+/// Transfers all pairs, and resumes an earlier run into the same folder.
 pub(super) fn run(options: &TransferOptions, common: &Common) -> Result<(), Failure> {
     let start = Instant::now();
     let Some(folder) = &options.moved.output else {
@@ -188,7 +188,7 @@ fn pairs<'a>(
 }
 
 impl Pair<'_> {
-    /// The line of a file that this very transfer has left.
+    /// The result of an earlier run of the same transfer.
     fn done(&self) -> Option<PairLine> {
         let bytes = std::fs::read(&self.file).ok()?;
         let value = serde_json::from_slice(&bytes).ok()?;
