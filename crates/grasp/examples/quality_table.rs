@@ -2,7 +2,7 @@
 //!
 //! A line is a grasp: friction, edges (0 for the round cone), tolerance (of the round cone), number
 //! of contacts m, then 3m position, 3m normal and 3 centre coordinates, separated by blanks. Prints
-//! quality (what the convention prints), lower and upper a line, then the median over five runs of the microseconds a grasp and
+//! quality (what the convention prints), lower and upper, one grasp per line; then the median over five runs of the microseconds per grasp and
 //! the facets made a grasp. With the name of a convention as argument, its own friction, edges and
 //! torque length take the place of the line's (`frogger` then also has its own tangents).
 #![allow(clippy::print_stdout, reason = "a program that prints its result")]
