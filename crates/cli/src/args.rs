@@ -145,9 +145,9 @@ fn count_in<const LOW: usize, const HIGH: usize>(text: &str) -> Result<usize, St
     }
 }
 
-/// How clouds are read and fitted.
+/// How clouds are read.
 #[derive(Clone, Debug, Args)]
-pub(crate) struct CloudOptions {
+pub(crate) struct ReadingOptions {
     /// Unit of the coordinates in the file. Default: metres, where an extent above 2 m or below 5 mm is
     /// refused.
     #[arg(long, value_enum)]
@@ -155,6 +155,13 @@ pub(crate) struct CloudOptions {
     /// Number of points sampled from a mesh, uniformly by area.
     #[arg(long, default_value_t = 25_000, value_parser = count_in::<100, 10_000_000>)]
     pub(crate) samples: usize,
+}
+
+/// How clouds are read and fitted.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct CloudOptions {
+    #[command(flatten)]
+    pub(crate) reading: ReadingOptions,
     /// Highest degree of the spherical harmonics.
     #[arg(long, default_value_t = 50, value_parser = count_in::<0, 150>)]
     pub(crate) degree: usize,

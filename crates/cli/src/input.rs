@@ -17,7 +17,7 @@ use shape::{FitError, FitSettings, PointCloud, SceneError};
 use sph::Direction;
 use sph::regression::RegressionError;
 
-use crate::args::{CloudOptions, ConventionOptions};
+use crate::args::{CloudOptions, ConventionOptions, ReadingOptions};
 use crate::failure::Failure;
 use crate::files;
 use crate::output::warn;
@@ -53,7 +53,7 @@ pub(crate) struct Scan {
 ///
 /// A mesh is sampled by area; the same seed gives the same points. If no unit was given, an
 /// implausible extent is refused.
-pub(crate) fn scan(path: &Path, options: &CloudOptions, seed: u64) -> Result<Scan, Failure> {
+pub(crate) fn scan(path: &Path, options: &ReadingOptions, seed: u64) -> Result<Scan, Failure> {
     let mut loaded = load(path)?;
     match options.unit {
         Some(unit) => loaded = loaded.scaled(unit.metres()),

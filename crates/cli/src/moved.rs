@@ -15,9 +15,12 @@ use crate::{input, output};
 
 /// Distance of a contact from the surface above which a warning is given, metres.
 const FAR: f64 = 5e-3;
+/// Distance of a contact from the surface above which positions are probably in millimetres, metres.
+const IN_METRES: f64 = 2.0;
 
-/// The grasps of a grasps.json in the frame of an object's cloud, as directions.
-pub(crate) fn given(object: &Object, path: &Path) -> Result<Vec<Given>, Failure> {
+/// The grasps of a grasps.json in the frame of an object's cloud, as directions, and warnings about
+/// contacts that are not on the object's surface.
+pub(crate) fn given(object: &Object, path: &Path) -> Result<(Vec<Given>, Vec<String>), Failure> {
     let file = input::grasps(path)?;
     if file.grasps.is_empty() {
         return Err(Failure::input(path, "there are no grasps in the file"));
@@ -37,15 +40,22 @@ pub(crate) fn given(object: &Object, path: &Path) -> Result<Vec<Given>, Failure>
             source: grasp.source,
         });
     }
+    let mut warnings = Vec::new();
     if farthest > FAR {
-        output::warn(format!(
-            "{}: a contact is {:.1} mm from the surface of {}; is it the right shape, and its cloud's frame?",
+        let hint = if farthest > IN_METRES {
+            "positions are expected in metres: are these millimetres?"
+        } else {
+            "are these grasps of another object, or in another frame than that of its cloud?"
+        };
+        warnings.push(format!(
+            "{}: a contact is {:.1} mm from the surface of {}; {hint}",
             path.display(),
             1e3 * farthest,
             object.name()
         ));
     }
-    Ok(given)
+    warnings.iter().for_each(output::warn);
+    Ok((given, warnings))
 }
 
 /// A file of moved grasps on one object, the best first.

@@ -27,6 +27,8 @@ pub(crate) struct Movement<'a> {
     pub(crate) scheme: &'static str,
     /// Quality on the target object.
     pub(crate) measure: &'a Measure<'a>,
+    /// Warnings about the grasps, for the result.
+    pub(crate) warnings: Vec<String>,
     /// When the work began.
     pub(crate) start: Instant,
 }
@@ -128,6 +130,7 @@ impl Movement<'_> {
             seconds: self.start.elapsed().as_secs_f64(),
             output: path(&options.output),
             trace: path(&options.trace),
+            warnings: &self.warnings,
         };
         if json {
             return output::say_json(&line);
@@ -198,4 +201,5 @@ struct Summary<'a> {
     seconds: f64,
     output: Option<String>,
     trace: Option<String>,
+    warnings: &'a [String],
 }

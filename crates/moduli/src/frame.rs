@@ -55,6 +55,11 @@ impl CloudFrame {
         }
     }
 
+    /// A pose given in the frame of the cloud, in the centred frame.
+    pub fn pose_to_centred(&self, cloud_from_palm: &Isometry3<f64>) -> Isometry3<f64> {
+        Translation3::from(-self.centre.coords) * cloud_from_palm
+    }
+
     /// A pose given in the centred frame, in the frame of the cloud.
     pub fn pose_to_cloud(&self, centred_from_palm: &Isometry3<f64>) -> Isometry3<f64> {
         Translation3::from(self.centre.coords) * centred_from_palm

@@ -37,6 +37,7 @@ mod foot;
 mod frame;
 mod grasp;
 pub mod grasps_file;
+mod hand_contacts;
 mod hands;
 mod library;
 mod library_entry;
@@ -51,10 +52,11 @@ mod synthesis;
 pub use crate::error::Error;
 pub use crate::frame::CloudFrame;
 pub use crate::grasp::{Grasp, Grasps, HandPlacement, Source, ranked};
+pub use crate::hand_contacts::{FoundContacts, HandContacts};
 pub use crate::hands::HandSearch;
 pub use crate::library::{Library, Neighbour, TransferOptions};
 pub use crate::library_entry::{Kept, separation};
-pub use crate::measure::Measure;
+pub use crate::measure::{Measure, uncertainty};
 pub use crate::metrics::Metrics;
 pub use crate::object::{
     FitReport, Object, Reconstruction, ReconstructionSettings, object_points, reconstruct,
@@ -65,15 +67,15 @@ pub use crate::spherical_object::{SphericalObject, SurfacePoint};
 pub use crate::synthesis::Poses;
 
 pub use ::grasp::{
-    CentreRule, Contact, Convention, EdgeNorm, Edges, Epsilon, Resistance, TangentRule,
-    TorqueLength, Wrench,
+    CentreRule, Contact, Convention, EdgeNorm, Edges, Epsilon, GraspModel, Resistance, TangentRule,
+    TorqueLength, Uncertainty, Wrench,
 };
 pub use ::hand::{Hand, OutcomeCounts, TipModel};
 pub use ::record;
 pub use ::shape::io::Format;
 pub use ::shape::{
-    Acceptance, Fit, FitSettings, PointCloud, RadialShape, Scene, SceneSettings, SphericalSettings,
-    SphericalShape, Support, SupportRule, SupportSource, Surface, Verdict,
+    Acceptance, Evidence, Fit, FitSettings, PointCloud, RadialShape, Scene, SceneSettings,
+    SphericalSettings, SphericalShape, Support, SupportRule, SupportSource, Surface, Verdict,
 };
 pub use ::sph::Direction;
 pub use nalgebra;

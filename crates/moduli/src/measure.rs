@@ -26,6 +26,15 @@ pub struct Measure<'a> {
     support: Option<Support>,
 }
 
+/// What the evidence of a cloud leaves uncertain about a contact: the distance of the data is the error
+/// of the position, and the spread of its normals that of the normal.
+pub fn uncertainty(evidence: &Evidence) -> Uncertainty {
+    Uncertainty {
+        position: evidence.distance,
+        normal: evidence.normal_spread,
+    }
+}
+
 impl Object {
     /// Resolves a convention on this object.
     ///
@@ -134,12 +143,23 @@ impl<'a> Measure<'a> {
     }
 
     fn epsilon_of(&self, contacts: &[Contact]) -> Result<Epsilon, QualityError> {
+        self.with_model(contacts, |model| {
+            grasp::epsilon(model, &mut Workspace::new())
+        })
+    }
+
+    /// Calls a function with contacts in the centred frame as the grasp model of this measure, with its
+    /// centre, its convention and its contact models.
+    pub(crate) fn with_model<T>(
+        &self,
+        contacts: &[Contact],
+        of: impl FnOnce(&GraspModel<'_>) -> T,
+    ) -> T {
         let centre = self.centre();
-        let models = self
-            .tips()
-            .of_contacts(self.convention().friction, contacts.len());
+        let friction = self.convention().friction;
+        let models = self.tips().of_contacts(friction, contacts.len());
         let model = GraspModel::new(contacts, &centre, self.convention());
-        grasp::epsilon(&model.with_contact_models(&models), &mut Workspace::new())
+        of(&model.with_contact_models(&models))
     }
 
     /// The grasp with contacts in the given directions.
@@ -200,27 +220,17 @@ impl<'a> Measure<'a> {
     }
 
     /// A proved lower bound of the epsilon quality on every surface whose contacts and normals agree with
-    /// the evidence, one entry per contact: [`grasp::robust_quality`] with the distance of the data as the
-    /// error of the position and the spread of its normals as that of the normal. An unseen contact
-    /// carries nothing; a grasp on edges has 0.
+    /// the evidence, one entry per contact: [`grasp::robust_quality`] with the [`uncertainty`] of each and
+    /// the contact model of this measure. An unseen contact carries nothing; a grasp on edges has 0.
     ///
     /// # Errors
     /// There is another number of entries than of contacts, or the quality cannot be computed.
     pub fn robust(&self, grasp: &Grasp, evidence: &[Evidence]) -> Result<f64, Error> {
-        let known: Vec<Uncertainty> = evidence
-            .iter()
-            .map(|e| Uncertainty {
-                position: e.distance,
-                normal: e.normal_spread,
-            })
-            .collect();
-        let centre = self.centre();
-        let model = GraspModel::new(grasp.contacts(), &centre, self.convention());
-        Ok(grasp::robust_quality(
-            &model,
-            &known,
-            &mut Workspace::new(),
-        )?)
+        let known: Vec<Uncertainty> = evidence.iter().map(uncertainty).collect();
+        let robust = self.with_model(grasp.contacts(), |model| {
+            grasp::robust_quality(model, &known, &mut Workspace::new())
+        });
+        Ok(robust?)
     }
 
     /// Raises the quality of a grasp by moving its contacts over the surface; never lowers it. The

@@ -110,12 +110,12 @@ impl Metrics {
 }
 
 impl Measure<'_> {
-    /// All metrics of a grasp on this object.
+    /// All metrics of a grasp on this object, with the contact model of this measure.
     ///
     /// # Errors
     /// The grasp has fewer than two contacts, or a measure cannot be computed.
     pub fn metrics(&self, grasp: &Grasp) -> Result<Metrics, Error> {
-        Metrics::of(grasp.contacts(), &self.centre(), self.convention())
+        self.with_model(grasp.contacts(), Metrics::of_model)
     }
 
     /// Contact forces inside the friction cones that balance an external wrench, with the least
@@ -126,9 +126,8 @@ impl Measure<'_> {
     /// # Errors
     /// The grasp has fewer than two contacts.
     pub fn resist(&self, grasp: &Grasp, external: &Wrench) -> Result<Resistance, Error> {
-        let centre = self.centre();
-        let model = GraspModel::new(grasp.contacts(), &centre, self.convention());
-        Ok(grasp::resist(&model, external)?)
+        let resistance = self.with_model(grasp.contacts(), |model| grasp::resist(model, external));
+        Ok(resistance?)
     }
 }
 

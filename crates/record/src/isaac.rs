@@ -1,12 +1,18 @@
 //! Grasps as an `isaac_grasp` YAML file of version 1.0, which Isaac Sim's Grasp Editor writes and
 //! its `import_grasps_from_file` reads.
 //!
-//! The format describes one object and one gripper, so grasps without a hand are left out.
+//! The format describes one object and one gripper, so grasps without a hand are left out. It holds
+//! poses and joint values and no contacts: these follow from the surface and the hand.
+
+mod read;
+mod yaml;
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use crate::grasps::{GraspsFile, HandRecord, JointRecord};
+
+pub use read::{IsaacError, IsaacFile, IsaacGrasp};
 
 /// The YAML text: every grasp that has a hand, by rank, as `grasp_0`, `grasp_1`, …
 ///

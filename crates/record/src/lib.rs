@@ -2,7 +2,8 @@
 //!
 //! - [`ShapeRecord`], [`SphericalRecord`], [`LibraryRecord`] and [`LibraryObjectRecord`] are binary
 //!   files. [`envelope`] gives them a header with the kind, the version and a checksum of the body.
-//! - [`GraspsFile`] is `grasps.json`; [`isaac_grasps`] writes its grasps as YAML for Isaac Sim.
+//! - [`GraspsFile`] is `grasps.json`; [`isaac_grasps`] writes its grasps as YAML for Isaac Sim,
+//!   and [`IsaacFile`] reads such files.
 //!
 //! This crate depends on no other crate of the project, so a program that only reads files needs
 //! nothing else. The types hold plain numbers whose meaning is not checked. For example, the crate
@@ -34,7 +35,7 @@ pub mod spherical_record;
 
 pub use envelope::{EnvelopeError, Kind};
 pub use grasps::{GraspRecord, GraspsFile, GraspsFileError};
-pub use isaac::isaac_grasps;
+pub use isaac::{IsaacError, IsaacFile, IsaacGrasp, isaac_grasps};
 pub use library::{LibraryEntry, LibraryGrasp, LibraryObjectRecord, LibraryRecord};
 pub use shape_record::{ShapeNotes, ShapeRecord};
 pub use spherical_record::SphericalRecord;

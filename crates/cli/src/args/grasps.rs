@@ -6,12 +6,13 @@ use clap::{Args, ValueEnum};
 use hand::TipModel;
 use serde::Serialize;
 
-use super::ConventionOptions;
+use super::{ConventionOptions, HandOptions, ReadingOptions};
 
 #[derive(Debug, Args)]
 pub(crate) struct QualityOptions {
-    /// The grasps: a grasps.json, or rows of 6m+3 numbers in .npy or .csv for m contacts: the positions,
-    /// the inward unit normals, and the point about which torques are taken. `-` for standard input.
+    /// The grasps: a grasps.json; rows of 6m+3 numbers in .npy or .csv for m contacts: the positions, the
+    /// inward unit normals, and the point about which torques are taken; or an isaac_grasp YAML, with
+    /// --shape and --hand. `-` for standard input.
     pub(crate) grasps: PathBuf,
     /// Also compute volume, L-infinity, min-weight, least friction, smallest singular value and the
     /// normal force per load, one named column each.
@@ -20,11 +21,23 @@ pub(crate) struct QualityOptions {
     /// The measure of quality.
     #[arg(long, value_enum, default_value_t = Metric::Epsilon)]
     pub(crate) metric: Metric,
-    /// Contact model: `point`, `soft:RADIUS` (a disc under even pressure, with torsion 2/3 μ RADIUS) or
+    /// Contact model: `point`, `soft:RADIUS` (a disc under uniform pressure, with torsion 2/3 μ RADIUS) or
     /// `patch:RADIUS` (four point contacts on a square pad). RADIUS in metres. By default the model of
     /// the file, `point` where it has none.
     #[arg(long, value_parser = contact_option)]
     pub(crate) contact: Option<TipModel>,
+    /// The object of an isaac_grasp YAML: a shape file, as `moduli fit` writes it. The contacts are the
+    /// points of its surface within 5 mm of the tips of the hand.
+    #[arg(long)]
+    pub(crate) shape: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) hand: HandOptions,
+    /// A scan of the object, in the frame of the grasps. With `--all` it adds the columns
+    /// robust_quality, distance_to_cloud_m and normal_spread_deg, measured within 5 mm of each contact.
+    #[arg(long, value_name = "SCAN", requires = "all")]
+    pub(crate) cloud: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reading: ReadingOptions,
     /// File for the proofs of the intervals of epsilon quality, as JSON.
     #[arg(long, value_name = "FILE")]
     pub(crate) certificate: Option<PathBuf>,

@@ -16,7 +16,7 @@ use crate::{input, limits};
 pub(crate) fn run(options: &AscendOptions, common: &Common) -> Result<(), Failure> {
     let convention = input::convention(&options.moved.convention)?;
     let object = input::object(&options.shape)?;
-    let grasps = given(&object, &options.grasps)?;
+    let (grasps, warnings) = given(&object, &options.grasps)?;
     let measure = object
         .measure(&convention)
         .map_err(|e| Failure::usage(e.to_string()))?;
@@ -34,6 +34,7 @@ pub(crate) fn run(options: &AscendOptions, common: &Common) -> Result<(), Failur
             AscentScheme::Paper => "paper",
         },
         measure: &measure,
+        warnings,
         start: Instant::now(),
     };
     movement.run(&grasps, &options.moved, common, |i, start| {

@@ -88,7 +88,7 @@ pub(crate) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> 
 }
 
 fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Failure> {
-    let scan = input::scan(path, &options.cloud, seed)?;
+    let scan = input::scan(path, &options.cloud.reading, seed)?;
     let start = Instant::now();
     let made = input::fitted(&scan, &path.display().to_string(), &options.cloud)?;
     let (object, fit) = (made.object, made.fit);

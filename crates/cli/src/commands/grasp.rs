@@ -80,7 +80,7 @@ pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure
     }
     let mut failures = Vec::new();
     for (path, folder) in options.clouds.iter().zip(&folders) {
-        let done = input::scan(path, &options.fit, common.seed)
+        let done = input::scan(path, &options.fit.reading, common.seed)
             .and_then(|scan| shared.grasp(&input::stem(path), &scan, folder));
         failures.extend(done.err());
     }

@@ -211,7 +211,7 @@ impl<'a> Maker<'a> {
     fn make(&self, path: &Path, key: &Key) -> Result<LibraryObjectRecord, Failure> {
         let options = self.options;
         let name = input::stem(path);
-        let scan = input::scan(path, &options.fit, self.common.seed)?;
+        let scan = input::scan(path, &options.fit.reading, self.common.seed)?;
         let object = input::fitted(&scan, &name, &options.fit)?.object;
         let refused = |e: moduli::Error| Failure::refused(format!("{name}: {e}"));
         let measure = object.measure(&self.convention).map_err(refused)?;

@@ -1,15 +1,16 @@
 //! `moduli quality`: the quality of given grasps, each with an interval that contains it.
 
 mod certificates;
+mod evidence;
 mod grasps;
+mod isaac;
 
 use std::path::Path;
 use std::time::Instant;
 
-use grasp::{CentreRule, Convention, Epsilon, Grasp, GraspModel, TangentRule, Workspace};
-use hand::TipModel;
+use grasp::{CentreRule, Contact, Convention, Epsilon, Grasp, GraspModel, TangentRule, Workspace};
 use moduli::Metrics;
-use nalgebra::{Point3, Vector3};
+use nalgebra::Vector3;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -38,7 +39,7 @@ struct QualityLine {
     seconds: f64,
     us_per_grasp: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
-    columns: Option<&'static [&'static str]>,
+    columns: Option<Vec<&'static str>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     rows: Option<Vec<Vec<Option<f64>>>>,
 }
@@ -53,18 +54,23 @@ struct Row {
 
 pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failure> {
     let named = input::convention(&options.convention)?;
-    let asked = options.convention.convention.as_ref().map(|_| &named);
-    let set = grasps::read_grasps(&options.grasps, asked)?;
+    let set = grasps::read_grasps(options, &named)?;
+    let scan = evidence::read(options, common)?;
+    let cloud = scan.as_ref().map(|scan| &scan.cloud);
+    let named = set.resolved.unwrap_or(named);
     let (grasps, convention) = (set.grasps, convention(options, named, set.rule)?);
     let tips = options.contact.unwrap_or(set.tips);
     let start = Instant::now();
     let path = &options.grasps;
     let rows = if options.all {
-        let all = |grasp: &Grasp, _: &mut Workspace| {
+        let all = |grasp: &Grasp, work: &mut Workspace| {
             let models = tips.of_contacts(convention.friction, grasp.contacts.len());
             let model = grasp.under(&convention).with_contact_models(&models);
             let metrics = Metrics::of_model(&model)?;
-            let cells = metrics.row(&convention).to_vec();
+            let mut cells = metrics.row(&convention).to_vec();
+            if let Some(cloud) = cloud {
+                cells.extend(evidence::cells(&model, cloud, work)?);
+            }
             Ok(Row::new(&metrics.epsilon, cells))
         };
         measure(&grasps, path, all)?
@@ -77,9 +83,10 @@ pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failu
         measure(&grasps, path, one)?
     };
     let seconds = start.elapsed().as_secs_f64();
-    let columns = &Metrics::COLUMNS[..rows[0].cells.len()];
+    let named = Metrics::COLUMNS.into_iter().chain(evidence::COLUMNS);
+    let columns: Vec<&'static str> = named.take(rows[0].cells.len()).collect();
     if let Some(path) = &options.output {
-        let bytes = table(path, columns, &rows)?;
+        let bytes = table(path, &columns, &rows)?;
         output::write_file(path, &bytes)?;
     }
     if let Some(path) = &options.certificate {
@@ -89,10 +96,11 @@ pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failu
     let mut line = summary(&rows, options.metric, &convention, seconds);
     line.warnings.extend(set.warnings);
     line.warnings.extend(unit_warning(&grasps));
-    if options.all && tips != TipModel::Point {
-        let text = "the file's contacts are soft or patches; --all takes them for hard points";
-        line.warnings.push(text.to_owned());
-    }
+    line.warnings
+        .extend(scan.iter().flat_map(|scan| scan.warnings.clone()));
+    let distance = columns.iter().position(|c| *c == evidence::COLUMNS[1]);
+    let distances = distance.map(|at| rows.iter().map(move |row| row.cells[at]));
+    line.warnings.extend(distances.and_then(evidence::warning));
     line.warnings.iter().for_each(output::warn);
     if common.json {
         return output::say_json(&QualityLine {
@@ -103,7 +111,7 @@ pub(crate) fn run(options: &QualityOptions, common: &Common) -> Result<(), Failu
             ..line
         });
     }
-    print(options.all, columns, &rows);
+    print(options.all, &columns, &rows);
     output::say(format!(
         "{} grasps, {} force-closed, mean {:.6}, best {:.6} under `{}`; {:.1} µs per grasp",
         line.grasps, line.closed, line.mean, line.best, line.convention, line.us_per_grasp
@@ -175,21 +183,25 @@ impl Row {
     }
 }
 
-/// Distance of contacts above which they are probably in millimetres.
+/// A warning about contacts that are so far apart that they are probably in millimetres, or so far from
+/// the centre of torques that one of the two is.
 fn unit_warning(grasps: &[Grasp]) -> Option<String> {
     const WIDEST: f64 = 2.0;
-    let apart = |g: &Grasp| {
-        let first = g.contacts.first().map_or(Point3::origin(), |c| c.position);
-        let distances = g.contacts.iter().map(|c| (c.position - first).norm());
-        distances.fold(0.0, f64::max)
+    let spans = grasps.iter().map(|g| {
+        let first = g.contacts.first().map_or(g.centre, |c| c.position);
+        let apart = |c: &Contact| (c.position - first).norm();
+        let apart = g.contacts.iter().map(apart).fold(0.0, f64::max);
+        (apart, (g.centre - first).norm())
+    });
+    let wide = |(_, (apart, away)): &(usize, (f64, f64))| apart.max(*away) > WIDEST;
+    let (first, (apart, away)) = spans.enumerate().find(wide)?;
+    let what = if apart > WIDEST {
+        format!("the contacts of grasp {first} are {apart:.1} m apart")
+    } else {
+        format!("the centre of grasp {first} is {away:.1} m from its contacts")
     };
-    let (first, distance) = grasps
-        .iter()
-        .map(apart)
-        .enumerate()
-        .find(|(_, distance)| *distance > WIDEST)?;
     Some(format!(
-        "the contacts of grasp {first} are {distance:.1} m apart; positions are expected in metres: are these millimetres?"
+        "{what}; positions are expected in metres: are these millimetres?"
     ))
 }
 

@@ -44,7 +44,7 @@ fn one_pair(
 ) -> Result<(), Failure> {
     let convention = input::convention(&options.moved.convention)?;
     let (from, to) = (input::object(from)?, input::object(to)?);
-    let grasps = given(&from, path)?;
+    let (grasps, warnings) = given(&from, path)?;
     let transfer = between(&from, &to, &convention);
     let start = Instant::now();
     let measure = to
@@ -56,6 +56,7 @@ fn one_pair(
         doing: "transferring",
         scheme: scheme_name(options),
         measure: &measure,
+        warnings,
         start,
     };
     movement.run(&grasps, &options.moved, common, |i, placed| {

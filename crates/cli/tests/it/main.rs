@@ -3,6 +3,7 @@
 mod ascend_transfer;
 mod commands;
 mod common;
+mod evidence;
 mod formats;
 mod grippers;
 mod hands;

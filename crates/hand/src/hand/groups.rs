@@ -23,6 +23,13 @@ pub struct FingerGroup {
     pub(crate) joint_speeds: Vec<Vec<f64>>,
 }
 
+impl FingerGroup {
+    /// A bound on the speed of all points that move, in metres per unit of closing.
+    pub fn largest_speed(&self) -> f64 {
+        self.speed_bounds.iter().copied().fold(0.0, f64::max)
+    }
+}
+
 /// Puts fingers that share a closing joint into one group, and assigns each moving link to one
 /// finger of its group.
 pub(super) fn groups(

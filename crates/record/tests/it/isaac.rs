@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use record::grasps::{
     ExecutionRecord, HandRecord, JointRecord, JointUnit, PoseRecord, SourceRecord,
 };
-use record::{GraspRecord, isaac_grasps};
+use record::{GraspRecord, IsaacFile, isaac_grasps};
 
 use crate::grasps::{file, grasp};
 
@@ -59,4 +59,106 @@ grasps:
       \"a \\\"b\\\": c\": -0.25
 ";
     assert_eq!(isaac_grasps(&file), expected);
+}
+
+#[test]
+fn what_is_written_is_read_again() {
+    let mut file = file();
+    file.grasps = vec![with_hand(0.5)];
+    let read = IsaacFile::from_yaml(&isaac_grasps(&file)).unwrap();
+    assert_eq!(read.object_frame_link, "ball");
+    assert_eq!(read.gripper_frame_link, "palm");
+    let [grasp] = &read.grasps[..] else {
+        panic!("{read:?}");
+    };
+    let hand = file.grasps[0].hand.as_ref().unwrap();
+    assert_eq!(grasp.name, "grasp_0");
+    assert_eq!(grasp.confidence, Some(0.5));
+    assert_eq!(grasp.pose, hand.cloud_from_palm);
+    assert_eq!(grasp.joints["joint_0.0"], 1.0);
+    assert_eq!(grasp.pregrasp_joints["a \"b\": c"], -0.25);
+}
+
+/// The layout that the Grasp Editor writes: lists in blocks, keys in another order, further keys.
+#[test]
+fn block_style_and_unknown_keys_are_read() {
+    let text = "format: isaac_grasp\nformat_version: '1.0'\ncreated_with: x\n\nobject_frame_link: /World/cube\n\
+                gripper_frame_link: /World/hand/palm\n\ngrasps:\n  flat:\n    confidence: 1\n    position:\n    - -0.5\n    - 1e-3\n    - 2\n\
+                    orientation:\n      w: -1.0\n      xyz: [0, 0, 0]\n    cspace_position: {finger_joint: 0.17} # closed\n    note: {a: [1]}\n";
+    let text = text.replace("                    orientation", "    orientation");
+    let read = IsaacFile::from_yaml(&text).unwrap();
+    assert_eq!(read.grasps[0].pose.translation_m, [-0.5, 1e-3, 2.0]);
+    assert_eq!(read.grasps[0].joints["finger_joint"], 0.17);
+    assert!(read.grasps[0].pregrasp_joints.is_empty());
+}
+
+#[test]
+fn other_texts_are_refused_by_line_and_key() {
+    let whole = "format: isaac_grasp\nformat_version: 1.0\ngrasps:\n  g:\n    position: [0, 0, 1]\n    orientation: {w: 1, xyz: [0, 0, 0]}\n";
+    assert!(IsaacFile::from_yaml(whole).is_ok());
+    let said = |from: &str, to: &str| {
+        assert!(whole.contains(from));
+        let text = whole.replace(from, to);
+        IsaacFile::from_yaml(&text).unwrap_err().to_string()
+    };
+    let cases = [
+        (
+            "isaac_grasp",
+            "moveit",
+            "line 1: `format` is `moveit`; expected `isaac_grasp`",
+        ),
+        (
+            "1.0",
+            "2.0",
+            "line 2: `format_version` is `2.0`; expected 1.0",
+        ),
+        (
+            "[0, 0, 1]",
+            "[0, 0]",
+            "line 5: `g.position` has 2 entries; expected three numbers",
+        ),
+        (
+            "[0, 0, 1]",
+            "[0, .nan, 1]",
+            "line 5: `g.position` is `.nan`; expected a finite number",
+        ),
+        (
+            "w: 1",
+            "w: 0.5",
+            "line 6: `g.orientation` has the length 0.500; expected a unit quaternion",
+        ),
+        (
+            "position",
+            "place",
+            "`g.position` is missing; expected a value",
+        ),
+        (
+            "[0, 0, 1]",
+            "&a [0, 0, 1]\n    b: *a",
+            "line 6: aliases (`*name`) are not read",
+        ),
+        ("[0, 0, 1]", "[0, 0, 1", "line 6"),
+        (
+            "orientation",
+            "position",
+            "line 6: the key `position` is given twice",
+        ),
+    ];
+    for (from, to, expected) in cases {
+        let text = said(from, to);
+        assert!(text.contains(expected), "{from} -> {to}: {text}");
+    }
+    let deep = format!("{}{}", "[".repeat(100_000), "]".repeat(100_000));
+    assert!(
+        IsaacFile::from_yaml(&deep)
+            .unwrap_err()
+            .to_string()
+            .contains("nested deeper")
+    );
+    assert!(
+        IsaacFile::from_yaml("")
+            .unwrap_err()
+            .to_string()
+            .contains("empty")
+    );
 }

@@ -112,5 +112,5 @@ fn points(path: &Path, options: &FitOptions, common: &Common) -> Result<PointClo
             ),
         ));
     }
-    Ok(input::scan(path, &options.cloud, common.seed)?.cloud)
+    Ok(input::scan(path, &options.cloud.reading, common.seed)?.cloud)
 }

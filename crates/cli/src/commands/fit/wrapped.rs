@@ -58,7 +58,7 @@ pub(super) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> 
 }
 
 fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<WrappedLine, Failure> {
-    let scan = input::scan(path, &options.cloud, seed)?;
+    let scan = input::scan(path, &options.cloud.reading, seed)?;
     let points = scan.cloud.points().len();
     let start = Instant::now();
     let input::Scan {

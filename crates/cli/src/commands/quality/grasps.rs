@@ -5,9 +5,11 @@ use std::path::Path;
 use grasp::{CentreRule, Contact, Convention, Grasp};
 use hand::TipModel;
 use nalgebra::{Point3, UnitVector3, Vector3};
-use record::GraspsFile;
+use record::{GraspsFile, IsaacFile};
 use run::npy::Table;
 
+use super::isaac::read_isaac;
+use crate::args::QualityOptions;
 use crate::failure::Failure;
 use crate::input;
 
@@ -15,15 +17,18 @@ use crate::input;
 const NEARLY_UNIT: f64 = 0.01;
 /// Normals whose length is farther from 1 than this are counted, since they were made unit vectors.
 const UNIT: f64 = 1e-6;
+/// Contacts farther from the certified range of the surface than this are not on it, metres.
+const OFF_SURFACE: f64 = 5e-3;
 
-const EXPECTED: &str =
-    "expected a grasps.json, or rows of numbers as an array of NumPy or as text (.csv)";
+const EXPECTED: &str = "expected a grasps.json, an isaac_grasp YAML, or rows of numbers as an array of NumPy or as text (.csv)";
 
 /// The grasps of a file.
 pub(super) struct GraspSet {
     pub(super) grasps: Vec<Grasp>,
     /// The convention that the file names.
     pub(super) rule: Option<Convention>,
+    /// The convention of the options resolved on the object, if the object is known.
+    pub(super) resolved: Option<Convention>,
     /// The contact model of the file.
     pub(super) tips: TipModel,
     pub(super) warnings: Vec<String>,
@@ -33,18 +38,27 @@ pub(super) struct GraspSet {
 /// a text of rows of numbers.
 ///
 /// The centre of torques comes with each row of numbers. In a `grasps.json` it is the one that the
-/// `asked` convention names, or that of the file where none was asked for.
-pub(super) fn read_grasps(path: &Path, asked: Option<&Convention>) -> Result<GraspSet, Failure> {
+/// `named` convention of the options names, or that of the file where the options name none.
+pub(super) fn read_grasps(
+    options: &QualityOptions,
+    named: &Convention,
+) -> Result<GraspSet, Failure> {
+    let path = options.grasps.as_path();
+    let asked = options.convention.convention.as_ref().map(|_| named);
     let bytes = input::read(path)?;
     let start = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
     if let Some(kind) = shape::io::foreign_kind(&bytes) {
         return Err(Failure::input(path, format!("this is {kind}; {EXPECTED}")));
     }
-    if start.starts_with(b"format: isaac_grasp") {
-        let why = "grasps of Isaac Sim are written and not read; give the grasps.json beside them";
-        return Err(Failure::input(path, why));
+    let text = String::from_utf8_lossy(start);
+    if IsaacFile::is_meant(&text) {
+        return read_isaac(path, &text, options, named);
     }
-    let mut reader = Reader { path, adjusted: 0 };
+    let mut reader = Reader {
+        path,
+        adjusted: 0,
+        off_object: None,
+    };
     let (mut rule, mut tips) = (None, TipModel::Point);
     let named_json = path.extension().is_some_and(|e| e == "json");
     let grasps = if bytes.starts_with(b"\x93NUMPY") {
@@ -69,6 +83,7 @@ pub(super) fn read_grasps(path: &Path, asked: Option<&Convention>) -> Result<Gra
     Ok(GraspSet {
         grasps,
         rule,
+        resolved: None,
         tips,
         warnings: reader.warnings(),
     })
@@ -92,6 +107,8 @@ fn contacts_in(path: &Path, place: &str, columns: usize) -> Result<usize, Failur
 struct Reader<'a> {
     path: &'a Path,
     adjusted: usize,
+    /// A contact that is not on the object of its file.
+    off_object: Option<String>,
 }
 
 impl Reader<'_> {
@@ -99,7 +116,36 @@ impl Reader<'_> {
         let count = self.adjusted;
         let said =
             format!("{count} normals were not of unit length (within 1 %) and were normalised");
-        (count > 0).then_some(said).into_iter().collect()
+        let adjusted = (count > 0).then_some(said);
+        adjusted
+            .into_iter()
+            .chain(self.off_object.clone())
+            .collect()
+    }
+
+    /// Notes the first contact that is farther from the centre of the file's object, or nearer to it,
+    /// than any point of the surface.
+    fn compare_with_object(&mut self, file: &GraspsFile) {
+        let object = &file.object;
+        let (least, largest) = (object.r_min_certified_m, object.r_max_certified_m);
+        if !(largest > 0.0 && least <= largest) {
+            return;
+        }
+        let off = |contact: &[f64; 3]| {
+            let radius = (Point3::from(*contact) - Point3::from(object.centre_m)).norm();
+            (radius - largest).max(least - radius)
+        };
+        for (i, grasp) in file.grasps.iter().enumerate() {
+            let farthest = grasp.contacts_m.iter().map(off).fold(0.0, f64::max);
+            if self.off_object.is_none() && farthest > OFF_SURFACE {
+                self.off_object = Some(format!(
+                    "a contact of grasp {i} is {:.1} mm or more from the surface of `{}`, the object of \
+                     the file; are these grasps of another object, in another frame or in another unit?",
+                    1e3 * farthest,
+                    object.name
+                ));
+            }
+        }
     }
 
     /// The unit vector of a normal whose length is 1 to within one per cent.
@@ -148,6 +194,7 @@ impl Reader<'_> {
             CentreRule::CentreOfMass => Point3::from(file.object.centre_of_mass_m),
             CentreRule::ObjectOrigin | CentreRule::Given => Point3::origin(),
         };
+        self.compare_with_object(&file);
         let mut grasps = Vec::with_capacity(file.grasps.len());
         for (i, g) in file.grasps.iter().enumerate() {
             let pairs = g.contacts_m.iter().zip(&g.inward_normals);

@@ -40,6 +40,7 @@ struct Source {
     side: Side,
     path: PathBuf,
     grasps: Vec<Given>,
+    warnings: Vec<String>,
     digest: Digest,
 }
 
@@ -107,7 +108,13 @@ pub(super) fn run(options: &TransferOptions, common: &Common) -> Result<(), Fail
     ended.map(|_| ())?;
     let lines: Vec<PairLine> = lines.into_iter().flatten().collect();
     output::write_file(&table, &output::encode(&lines)?)?;
-    say(&lines, kept, folder, start.elapsed().as_secs_f64(), common)
+    let warnings: Vec<&String> = sources.iter().flat_map(|s| &s.warnings).collect();
+    if common.json {
+        say_json(&lines, kept, folder, start, &warnings)?;
+    } else {
+        say(&lines, kept, folder, start);
+    }
+    refuse_unstable(&lines)
 }
 
 fn sources(options: &TransferOptions) -> Result<Vec<Source>, Failure> {
@@ -120,8 +127,10 @@ fn sources(options: &TransferOptions) -> Result<Vec<Source>, Failure> {
     }
     let sides = distinct(&options.from)?;
     let read = |(side, path): (Side, &PathBuf)| {
+        let (grasps, warnings) = given(&side.object, path)?;
         Ok(Source {
-            grasps: given(&side.object, path)?,
+            grasps,
+            warnings,
             digest: Digest::of(&input::read(path)?),
             path: path.clone(),
             side,
@@ -253,44 +262,76 @@ fn unencodable(error: serde_json::Error) -> Failure {
     Failure::other(format!("cannot encode the result as JSON: {error}"))
 }
 
-fn say(
+/// The sums over all pairs.
+struct Totals {
+    grasps: usize,
+    unstable: usize,
+    mean_start: f64,
+    mean_final: f64,
+}
+
+impl Totals {
+    fn of(lines: &[PairLine]) -> Self {
+        let grasps: usize = lines.iter().map(|l| l.grasps).sum();
+        let mean = |of: fn(&PairLine) -> f64| {
+            lines.iter().map(|l| of(l) * l.grasps as f64).sum::<f64>() / grasps as f64
+        };
+        Totals {
+            grasps,
+            unstable: lines.iter().map(|l| l.unstable).sum(),
+            mean_start: mean(|l| l.mean_start),
+            mean_final: mean(|l| l.mean_final),
+        }
+    }
+}
+
+fn say_json(
     lines: &[PairLine],
     kept: usize,
     folder: &Path,
-    seconds: f64,
-    common: &Common,
+    start: Instant,
+    warnings: &[&String],
 ) -> Result<(), Failure> {
-    let grasps: usize = lines.iter().map(|l| l.grasps).sum();
-    let unstable: usize = lines.iter().map(|l| l.unstable).sum();
-    let mean = |of: fn(&PairLine) -> f64| {
-        lines.iter().map(|l| of(l) * l.grasps as f64).sum::<f64>() / grasps as f64
-    };
-    let (mean_start, mean_final) = (mean(|l| l.mean_start), mean(|l| l.mean_final));
-    if common.json {
-        output::say_json(&json!({
-            "pairs": lines, "kept_pairs": kept, "grasps": grasps, "unstable": unstable,
-            "mean_start": mean_start, "mean_final": mean_final,
-            "output": folder.display().to_string(), "seconds": seconds,
-        }))?;
-    } else {
-        for line in lines {
-            output::say(format!(
-                "{:24} {:24} {:4} grasps  {:.4} → {:.4}, best {:.4}, {} not stable",
-                line.from,
-                line.to,
-                line.grasps,
-                line.mean_start,
-                line.mean_final,
-                line.best,
-                line.unstable
-            ));
-        }
+    let totals = Totals::of(lines);
+    output::say_json(&json!({
+        "pairs": lines, "kept_pairs": kept, "grasps": totals.grasps, "unstable": totals.unstable,
+        "mean_start": totals.mean_start, "mean_final": totals.mean_final,
+        "output": folder.display().to_string(), "warnings": warnings,
+        "seconds": start.elapsed().as_secs_f64(),
+    }))
+}
+
+fn say(lines: &[PairLine], kept: usize, folder: &Path, start: Instant) {
+    for line in lines {
         output::say(format!(
-            "{} pairs ({kept} done before), {grasps} grasps: mean {mean_start:.4} → {mean_final:.4}, {unstable} not stable; {seconds:.2} s\n{}",
-            lines.len(),
-            folder.display()
+            "{:24} {:24} {:4} grasps  {:.4} → {:.4}, best {:.4}, {} not stable",
+            line.from,
+            line.to,
+            line.grasps,
+            line.mean_start,
+            line.mean_final,
+            line.best,
+            line.unstable
         ));
     }
+    let Totals {
+        grasps,
+        unstable,
+        mean_start,
+        mean_final,
+    } = Totals::of(lines);
+    output::say(format!(
+        "{} pairs ({kept} done before), {grasps} grasps: mean {mean_start:.4} → {mean_final:.4}, {unstable} not stable; {:.2} s\n{}",
+        lines.len(),
+        start.elapsed().as_secs_f64(),
+        folder.display()
+    ));
+}
+
+fn refuse_unstable(lines: &[PairLine]) -> Result<(), Failure> {
+    let Totals {
+        grasps, unstable, ..
+    } = Totals::of(lines);
     if unstable == grasps {
         return Err(Failure::refused(format!(
             "none of {grasps} transferred grasps is stable; more friction (--friction) or other grasps may help"
