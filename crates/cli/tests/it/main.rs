@@ -1,6 +1,7 @@
 //! The tests of `cli` that use it from outside, as one program.
 
 mod ascend_transfer;
+mod certificates;
 mod commands;
 mod common;
 mod evidence;
