@@ -83,7 +83,7 @@ fn tables_of_grasps_of_many_programs() {
         ("1,2,x\n", "column 2"),
         ("solid\0\u{1}", "grasps.json"),
         ("version https://git-lfs.github.com/spec/v1\n", "LFS"),
-        ("format: isaac_grasp\n", "Isaac"),
+        ("format: isaac_grasp\n", "`grasps` is missing"),
     ] {
         std::fs::write(here.join("bad.csv"), text).unwrap();
         refused(

@@ -37,7 +37,7 @@ struct Line<'a> {
 }
 
 impl CollisionObject<'_> {
-    /// Whether a point (object frame, metres) is inside the surface.
+    /// Whether a point (centred frame, metres) is inside the surface.
     ///
     /// For a radial surface this is exact. Otherwise it is decided by the winding of the mesh about the
     /// point, and so certain for points farther than [`Self::mesh_error`] from the surface.
