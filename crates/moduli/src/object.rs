@@ -28,7 +28,7 @@ pub use reconstruction::{
 };
 
 /// Share of the directions without a point above which the surface there is said to be a guess.
-const GUESSED: f64 = 0.1;
+const GUESSED: f64 = 0.02;
 /// A largest residual above this share of the mean radius is said: a surface so steep is seldom one body.
 const STEEP: f64 = 0.5;
 /// Degree of the harmonics of a fit, as in the paper.

@@ -1,18 +1,23 @@
 //! A surface in M^sph from a cloud alone: wrap, map, fit.
 
-use nalgebra::Point3;
+use std::sync::Arc;
+
+use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
-use sph::Coefficients;
 use sph::regression::RegressionError;
+use sph::{Coefficients, Direction};
 use sphere_map::{
     ClosedHole, MapError, MapSettings, Tree, Wrap, WrapError, WrapSettings, sphere_map, wrap,
 };
 
+use crate::acceptance::{Acceptance, Verdict, noise};
 use crate::crossing::crossing;
 use crate::immersion::SphericalError;
 use crate::injectivity::Embedding;
+use crate::open_sheet::Walls;
 use crate::point_cloud::PointCloud;
 use crate::spherical::SphericalShape;
+use crate::spherical_field::SphericalField;
 use crate::spherical_rows::{Equations, Rows, reproject};
 
 /// Penalties that the search for an embedded start goes through, from detailed to smooth.
@@ -28,6 +33,10 @@ const GAIN: f64 = 0.01;
 /// The maps that are tried: weight of areas and barrier. The second pair is for clouds for which the
 /// first gives nothing.
 const MAPS: [[(f64, f64); 2]; 2] = [[(3.0, 0.3), (3.0, 0.05)], [(10.0, 0.05), (1.0, 0.05)]];
+/// A cloud of which a larger share of the points lies on a single sheet shows one side of its object.
+const MOST_SINGLE_SHEET: f64 = 0.25;
+/// An object with a larger share of its points at thin walls is a shell.
+const MOSTLY: f64 = 0.9;
 /// So many surfaces of a continuation are tried for a proof.
 const PROOFS: usize = 3;
 /// Anchors move to places of the wrap within so many spacings.
@@ -40,6 +49,20 @@ pub struct SphericalSettings {
     pub degree: usize,
     /// λ; chosen if it is not given.
     pub lambda: Option<f64>,
+    /// Whether a surface is kept that does not explain its points, or that is a shell around the scan of
+    /// one side of an object.
+    pub accept_misfit: bool,
+}
+
+impl SphericalSettings {
+    /// λ is chosen, and a surface that does not explain its points is refused.
+    pub fn new(degree: usize) -> Self {
+        Self {
+            degree,
+            lambda: None,
+            accept_misfit: false,
+        }
+    }
 }
 
 /// Why a cloud has no surface in M^sph.
@@ -57,6 +80,21 @@ pub enum SphericalCloudError {
     /// No fit is an immersion.
     #[error(transparent)]
     Spherical(#[from] SphericalError),
+    /// The points lie on one side of a surface.
+    #[error(
+        "{:.0} % of the points lie on a single sheet without an inside, as in the scan of one side of an object; a closed surface would be a shell of {:.1} mm around them: scan the object from all sides",
+        100.0 * share,
+        1e3 * thickness
+    )]
+    OneSide {
+        /// Share of the points, 0 to 1.
+        share: f64,
+        /// Thickness of the shell, metres.
+        thickness: f64,
+    },
+    /// The surface is no description of its points.
+    #[error("{0}")]
+    Unexplained(Acceptance),
     /// Every fit cuts itself.
     #[error(
         "every fitted surface cuts itself, the smoothest near ({x:.4}, {y:.4}, {z:.4}) m; parts of the object may be thinner than the scan resolves"
@@ -90,6 +128,53 @@ pub struct SphericalCloudFit {
     pub embedding: Embedding,
     /// Handles and tunnels that were closed, in the frame of the cloud.
     pub closed_holes: Vec<ClosedHole>,
+    /// Number of points that were not fitted because they are too far from the wrap.
+    pub left_out: usize,
+    /// Number of different points that were not seen from outside when the cloud was wrapped.
+    pub hidden: usize,
+    /// How well the surface explains all points of the cloud, those included that it was not fitted to.
+    pub acceptance: Acceptance,
+    /// The thin walls of the object.
+    pub walls: Walls,
+}
+
+impl SphericalCloudFit {
+    /// What the user should know about the fit, a sentence each.
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        if self.acceptance.verdict() != Verdict::Explained {
+            notes.push(self.acceptance.to_string());
+        }
+        let walls = &self.walls;
+        if walls.single_sheet_share > MOST_SINGLE_SHEET {
+            notes.push(format!(
+                "{:.0} % of the points lie on a single sheet without an inside; the surface is a shell around them",
+                100.0 * walls.single_sheet_share
+            ));
+        } else if walls.thin_share > MOSTLY {
+            notes.push(format!(
+                "the surface is a shell with walls of about {:.1} mm; if the object is solid, the scan shows one side of it only",
+                1e3 * walls.median_thickness_m
+            ));
+        }
+        for hole in &self.closed_holes {
+            let c = hole.centre;
+            notes.push(format!(
+                "a hole of {:.1} cm² around ({:.3}, {:.3}, {:.3}) m was closed; the object has no surface there",
+                1e4 * hole.area,
+                c.x,
+                c.y,
+                c.z
+            ));
+        }
+        if self.left_out > 0 {
+            notes.push(format!(
+                "{} points are too far from the wrapped object and had no influence on its surface",
+                self.left_out
+            ));
+        }
+        notes
+    }
 }
 
 /// A surface on the way.
@@ -99,12 +184,14 @@ struct Candidate {
     lambda: f64,
     rms: f64,
     max: f64,
+    /// Directions of the points that were fitted.
+    directions: Vec<Direction>,
 }
 
-/// The surfaces of one continuation, the most detailed last, and the number of points.
+/// The surfaces of one continuation, the most detailed last, and the points that were fitted.
 struct Continuation {
     candidates: Vec<Candidate>,
-    points: usize,
+    indices: Arc<[usize]>,
 }
 
 /// What does not change while one cloud is fitted.
@@ -113,6 +200,7 @@ struct Work<'a> {
     centre: Point3<f64>,
     wrap: &'a Wrap,
     tree: Tree,
+    walls: Walls,
     settings: SphericalSettings,
 }
 
@@ -132,10 +220,19 @@ pub fn fit_spherical_cloud(
     settings: &SphericalSettings,
 ) -> Result<SphericalCloudFit, SphericalCloudError> {
     let wrap = wrap(cloud.points(), &WrapSettings::default())?;
+    let tree = Tree::new(&wrap.mesh);
+    let walls = Walls::new(cloud.points(), &wrap, &tree);
+    if walls.single_sheet_share > MOST_SINGLE_SHEET && !settings.accept_misfit {
+        return Err(SphericalCloudError::OneSide {
+            share: walls.single_sheet_share,
+            thickness: walls.median_thickness_m,
+        });
+    }
     let work = Work {
         points: cloud.points(),
         centre: cloud.mean(),
-        tree: Tree::new(&wrap.mesh),
+        tree,
+        walls,
         wrap: &wrap,
         settings: *settings,
     };
@@ -149,21 +246,23 @@ pub fn fit_spherical_cloud(
             match result {
                 Ok(continuation) => {
                     let last = continuation.candidates.into_iter().rev().take(PROOFS);
-                    found.extend(last.map(|candidate| (candidate, continuation.points)));
+                    found.extend(last.map(|found| (found, Arc::clone(&continuation.indices))));
                 }
                 Err(e) => error = e,
             }
         }
         found.sort_by(|a, b| a.0.rms.total_cmp(&b.0.rms));
-        for (candidate, points) in found {
-            match work.proved(candidate, points) {
-                Ok(fit) if matches!(fit.embedding, Embedding::Proved { .. }) => return Ok(fit),
+        for (candidate, indices) in found {
+            match work.proved(candidate, &indices) {
+                Ok(fit) if matches!(fit.embedding, Embedding::Proved { .. }) => {
+                    return work.accepted(fit);
+                }
                 Ok(fit) => immersed = immersed.or(Some(fit)),
                 Err(e) => error = e.into(),
             }
         }
     }
-    immersed.ok_or(error)
+    immersed.ok_or(error).and_then(|fit| work.accepted(fit))
 }
 
 impl Work<'_> {
@@ -171,10 +270,11 @@ impl Work<'_> {
     fn proved(
         &self,
         candidate: Candidate,
-        points: usize,
+        indices: &[usize],
     ) -> Result<SphericalCloudFit, SphericalError> {
         let [x, y, z] = candidate.coordinates;
         let shape = SphericalShape::new(x, y, z)?;
+        let acceptance = self.explained(&shape, indices, &candidate.directions);
         Ok(SphericalCloudFit {
             embedding: shape.embedding(),
             shape,
@@ -182,9 +282,39 @@ impl Work<'_> {
             lambda: candidate.lambda,
             surface_rms: candidate.rms,
             surface_max: candidate.max,
-            points,
+            points: indices.len(),
             closed_holes: self.wrap.closed_holes.clone(),
+            left_out: self.points.len() - indices.len(),
+            hidden: self.wrap.hidden,
+            acceptance,
+            walls: self.walls,
         })
+    }
+
+    /// How well a surface explains all points; those with the given indices have directions.
+    fn explained(
+        &self,
+        shape: &SphericalShape,
+        indices: &[usize],
+        directions: &[Direction],
+    ) -> Acceptance {
+        let points: Vec<Point3<f64>> = self.points.iter().map(|x| x - self.centre.coords).collect();
+        // The search from any other start ends too far away, and a second one finds the nearest place.
+        let mut starts = vec![Vector3::z_axis(); points.len()];
+        for (i, p) in indices.iter().zip(directions) {
+            starts[*i] = *p;
+        }
+        let field = SphericalField::new(shape);
+        Acceptance::measure(&field, &points, Some(&starts), noise(&points))
+            .moved(&self.centre.coords)
+    }
+
+    /// The fit, if it explains its points or need not.
+    fn accepted(&self, fit: SphericalCloudFit) -> Result<SphericalCloudFit, SphericalCloudError> {
+        if fit.acceptance.verdict() == Verdict::Unexplained && !self.settings.accept_misfit {
+            return Err(SphericalCloudError::Unexplained(fit.acceptance));
+        }
+        Ok(fit)
     }
 
     /// The fits over one map.
@@ -234,14 +364,16 @@ impl Work<'_> {
         lambda: f64,
     ) -> Result<Continuation, SphericalCloudError> {
         let limit = REACH * self.wrap.spacing;
-        let measured = |coordinates, lambda, gaps: &[f64]| Candidate {
-            coordinates,
-            lambda,
-            rms: root_mean_square(gaps),
-            max: gaps.iter().fold(0.0, |a: f64, b| a.max(*b)),
-        };
-        let (mut directions, gaps) = reproject(&start, rows);
-        let mut kept = measured(start, lambda, &gaps);
+        let measured =
+            |coordinates, lambda, (directions, gaps): (Vec<Direction>, Vec<f64>)| Candidate {
+                coordinates,
+                lambda,
+                rms: root_mean_square(&gaps),
+                max: gaps.iter().fold(0.0, |a: f64, b| a.max(*b)),
+                directions,
+            };
+        let found = reproject(&start, rows);
+        let mut kept = measured(start, lambda, found);
         let mut candidates = Vec::new();
         let mut factor = if self.settings.lambda.is_some() {
             1.0
@@ -250,12 +382,18 @@ impl Work<'_> {
         };
         for _ in 0..ROUNDS {
             let before = &kept.coordinates;
-            let along = rows.along(before, directions.clone(), &self.tree, &self.centre, limit);
+            let along = rows.along(
+                before,
+                kept.directions.clone(),
+                &self.tree,
+                &self.centre,
+                limit,
+            );
             let smaller = (kept.lambda * factor).max(LEAST_LAMBDA.min(kept.lambda));
             let equations = Equations::new(&along, self.settings.degree)?;
             let next = equations.solve(smaller, Some(before))?;
-            let (moved, gaps) = reproject(&next, &along);
-            let next = measured(next, smaller, &gaps);
+            let found = reproject(&next, &along);
+            let next = measured(next, smaller, found);
             if !(next.rms < kept.rms) || crossing(&next.coordinates).is_some() {
                 factor = factor.sqrt();
                 if factor > LAST_FACTOR {
@@ -263,7 +401,6 @@ impl Work<'_> {
                 }
                 continue;
             }
-            directions = moved;
             let gain = 1.0 - next.rms / kept.rms;
             candidates.push(std::mem::replace(&mut kept, next));
             if gain < GAIN {
@@ -273,7 +410,7 @@ impl Work<'_> {
         candidates.push(kept);
         Ok(Continuation {
             candidates,
-            points: rows.points,
+            indices: Arc::clone(&rows.indices),
         })
     }
 }

@@ -1,5 +1,7 @@
 //! Points and anchors on the sphere, and the coordinates that fit them.
 
+use std::sync::Arc;
+
 use nalgebra::{Point3, UnitVector3, Vector3};
 use rayon::prelude::*;
 use sph::batch::values_and_gradients;
@@ -28,6 +30,8 @@ pub(crate) struct Rows {
     targets: Vec<Vector3<f64>>,
     /// How many are points.
     pub(crate) points: usize,
+    /// Which points of the cloud they are.
+    pub(crate) indices: Arc<[usize]>,
 }
 
 impl Rows {
@@ -51,9 +55,10 @@ impl Rows {
                 found.map(|at| map.image(&at))
             })
             .collect();
-        let kept = points.iter().zip(&placed);
-        let kept = kept.filter_map(|(p, at)| at.map(|at| (at, p - centre)));
-        let (mut directions, mut targets): (Vec<_>, Vec<_>) = kept.unzip();
+        let kept = placed.iter().enumerate();
+        let kept = kept.filter_map(|(i, at)| at.map(|at| (i, at)));
+        let (indices, mut directions): (Vec<usize>, Vec<Direction>) = kept.unzip();
+        let mut targets: Vec<Vector3<f64>> = indices.iter().map(|i| points[*i] - centre).collect();
         let count = directions.len();
         let anchors = even_directions(ANCHORS * (degree + 1) * (degree + 1));
         let places: Vec<Vector3<f64>> = anchors
@@ -66,6 +71,7 @@ impl Rows {
             directions,
             targets,
             points: count,
+            indices: indices.into(),
         }
     }
 
@@ -104,6 +110,7 @@ impl Rows {
             directions: all,
             targets,
             points: self.points,
+            indices: Arc::clone(&self.indices),
         }
     }
 
@@ -160,7 +167,7 @@ impl Equations {
 }
 
 /// Directions of the points of a surface nearest to the given ones, near where they were, and the
-/// distances.
+/// distances in metres, negative for points inside.
 pub(crate) fn reproject(
     coordinates: &[Coefficients; 3],
     rows: &Rows,
@@ -173,10 +180,11 @@ pub(crate) fn reproject(
         .unzip()
 }
 
-/// Gauss–Newton steps on |f(p) − x|², each only if it gets nearer.
+/// Gauss–Newton steps on |f(p) − x|², each only if it gets nearer. The distance is negative inside.
 fn nearest(fields: &[Field; 3], start: Direction, x: &Vector3<f64>) -> (Direction, f64) {
     let mut p = start;
     let mut distance = f64::INFINITY;
+    let mut inside = false;
     let mut step = Vector3::zeros();
     let mut tries = 0;
     while tries < STEPS {
@@ -198,6 +206,7 @@ fn nearest(fields: &[Field; 3], start: Direction, x: &Vector3<f64>) -> (Directio
         let (u, v) = sph::direction::tangent_frame(&p);
         let along = |w: &Vector3<f64>| Vector3::from(jets.each_ref().map(|j| j.gradient.dot(w)));
         let (fu, fv) = (along(&u), along(&v));
+        inside = gap.dot(&fu.cross(&fv)) < 0.0;
         let (e, f, g) = (fu.norm_squared(), fu.dot(&fv), fv.norm_squared());
         let (a, b) = (fu.dot(&gap), fv.dot(&gap));
         let determinant = e * g - f * f;
@@ -207,5 +216,6 @@ fn nearest(fields: &[Field; 3], start: Direction, x: &Vector3<f64>) -> (Directio
         step = u * ((g * a - f * b) / determinant) + v * ((e * b - f * a) / determinant);
         step *= (LONGEST / step.norm().max(f64::MIN_POSITIVE)).min(1.0);
     }
-    (UnitVector3::new_normalize(p.into_inner()), distance)
+    let signed = if inside { -distance } else { distance };
+    (UnitVector3::new_normalize(p.into_inner()), signed)
 }

@@ -59,6 +59,11 @@ impl<'a> VoxelGrid<'a> {
         }
     }
 
+    /// A point by its index.
+    pub(crate) fn point(&self, index: usize) -> &'a Point3<f64> {
+        &self.points[index]
+    }
+
     /// Indices of the points within `radius` of a place with the squares of their distances. Finds all
     /// of them where the radius is at most the side of the cubes.
     pub(crate) fn within(

@@ -95,6 +95,32 @@ impl Tree {
         Point3::from(a.coords * u + b.coords * v + c.coords * w)
     }
 
+    /// Where the line p + t d meets triangles, for t within ±`reach`: t and whether the triangle faces
+    /// along d there. In no particular order.
+    pub fn along_line(&self, p: &Point3<f64>, d: &Vector3<f64>, reach: f64) -> Vec<(f64, bool)> {
+        let mut found = Vec::new();
+        let mut stack = vec![0_u32];
+        if self.nodes.is_empty() {
+            return found;
+        }
+        while let Some(index) = stack.pop() {
+            let node = &self.nodes[index as usize];
+            if !node.meets(p, d, reach) {
+                continue;
+            }
+            if node.right != 0 {
+                stack.extend([index + 1, node.right]);
+                continue;
+            }
+            let near = self.corners[node.from as usize..node.to as usize].iter();
+            found.extend(
+                near.filter_map(|t| met(p, d, t))
+                    .filter(|(t, _)| t.abs() <= reach),
+            );
+        }
+        found
+    }
+
     /// Pairs of triangles without a common corner that cut each other; the search ends at `most` pairs.
     pub fn crossings(&self, most: usize) -> Vec<[usize; 2]> {
         let mut found = Vec::new();
@@ -185,6 +211,20 @@ impl Tree {
     }
 }
 
+/// Where a line p + t d meets a triangle, and whether the triangle faces along d. After Möller and
+/// Trumbore, Fast, minimum storage ray-triangle intersection, 1997.
+fn met(p: &Point3<f64>, d: &Vector3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> Option<(f64, bool)> {
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let across = d.cross(&ac);
+    let determinant = ab.dot(&across);
+    let u = ap.dot(&across) / determinant;
+    let along = ap.cross(&ab);
+    let v = d.dot(&along) / determinant;
+    // Written so that a line in the plane of the triangle, where u is infinite or NaN, does not meet it.
+    let inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0;
+    inside.then(|| (ac.dot(&along) / determinant, determinant < 0.0))
+}
+
 /// Whether a segment passes through a triangle; one in its plane does not.
 fn pierces(p: &Point3<f64>, q: &Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> bool {
     let volume = |x: &Point3<f64>, y: &Point3<f64>, z: &Point3<f64>, w: &Point3<f64>| {
@@ -200,6 +240,24 @@ fn pierces(p: &Point3<f64>, q: &Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> bo
 impl Node {
     fn touches(&self, other: &Self) -> bool {
         (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
+    }
+
+    /// Whether the line p + t d with |t| at most `reach` passes through the box.
+    fn meets(&self, p: &Point3<f64>, d: &Vector3<f64>, reach: f64) -> bool {
+        let (mut from, mut to) = (-reach, reach);
+        for axis in 0..3 {
+            let (low, high) = (self.low[axis] - p[axis], self.high[axis] - p[axis]);
+            if d[axis] == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return false;
+                }
+                continue;
+            }
+            let ends = [low / d[axis], high / d[axis]];
+            from = ends[0].min(ends[1]).max(from);
+            to = ends[0].max(ends[1]).min(to);
+        }
+        from <= to
     }
 
     fn size(&self) -> f64 {

@@ -14,4 +14,5 @@ mod real_scans;
 mod scenes;
 mod smoothing;
 mod spherical;
+mod spherical_clouds;
 mod true_surfaces;

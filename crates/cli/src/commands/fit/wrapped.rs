@@ -5,7 +5,10 @@ use std::time::Instant;
 
 use moduli::SphericalObject;
 use serde::Serialize;
-use shape::{Embedding, SphericalCloudFit, SphericalSettings, Surface, fit_spherical_cloud};
+use shape::{
+    Embedding, SphericalCloudError, SphericalCloudFit, SphericalSettings, Surface,
+    fit_spherical_cloud,
+};
 
 use super::target;
 use crate::args::{Common, FitOptions};
@@ -22,12 +25,16 @@ struct WrappedLine {
     lambda: [f64; 3],
     rms_m: f64,
     max_abs_m: f64,
+    noise_m: f64,
+    unexplained_share: f64,
     surface_rms_m: f64,
     in_m_sph: bool,
     embedding: &'static str,
     area_element_certified_m2: f64,
     volume_m3: f64,
     closed_holes: Vec<Hole>,
+    hidden: usize,
+    single_sheet_share: f64,
     centre_m: [f64; 3],
     warnings: Vec<String>,
     seconds: f64,
@@ -68,9 +75,9 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<WrappedLine, 
     let settings = SphericalSettings {
         degree: options.cloud.degree,
         lambda: options.cloud.lambda,
+        accept_misfit: options.cloud.scene.accept_misfit,
     };
-    let fit = fit_spherical_cloud(&cloud, &settings)
-        .map_err(|e| Failure::refused(format!("{}: {e}", path.display())))?;
+    let fit = fit_spherical_cloud(&cloud, &settings).map_err(|e| refused(path, &e))?;
     let closed_holes = fit.closed_holes.iter().map(|hole| Hole {
         centre_m: hole.centre.into(),
         area_m2: hole.area,
@@ -78,11 +85,13 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<WrappedLine, 
     });
     let closed_holes = closed_holes.collect();
     let max_abs_m = fit.surface_max;
+    let (acceptance, walls, hidden) = (fit.acceptance, fit.walls, fit.hidden);
     let (embedding, undecided) = verdict(&fit);
-    for warning in &undecided {
-        output::warn(format!("{}: {warning}", path.display()));
+    let notes: Vec<String> = fit.notes().into_iter().chain(undecided).collect();
+    for note in &notes {
+        output::warn(format!("{}: {note}", path.display()));
     }
-    warnings.extend(undecided);
+    warnings.extend(notes);
     let object = SphericalObject::from_cloud_fit(&input::stem(path), fit);
     let seconds = start.elapsed().as_secs_f64();
     if let Some(target) = target(path, options) {
@@ -99,19 +108,32 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<WrappedLine, 
         lambda: object.lambda(),
         rms_m: object.rms(),
         max_abs_m,
-        // The directions of the points are those of the nearest surface points, so both numbers are
-        // equal.
-        surface_rms_m: object.rms(),
+        noise_m: acceptance.noise_m,
+        unexplained_share: acceptance.unexplained_share,
+        surface_rms_m: acceptance.surface_rms_m,
         // A map that is not proved an immersion is refused by the fit.
         in_m_sph: true,
         embedding,
         area_element_certified_m2: shape.immersion().lower,
         volume_m3: shape.mass_properties().volume,
         closed_holes,
+        hidden,
+        single_sheet_share: walls.single_sheet_share,
         centre_m: object.frame().centre_in_cloud().into(),
         warnings,
         seconds,
     })
+}
+
+/// Why there is no surface, and what to try.
+fn refused(path: &Path, error: &SphericalCloudError) -> Failure {
+    let hint = match error {
+        SphericalCloudError::OneSide { .. } | SphericalCloudError::Unexplained(_) => {
+            "; --accept-misfit keeps this surface"
+        }
+        _ => "",
+    };
+    Failure::refused(format!("{}: {error}{hint}", path.display()))
 }
 
 /// The result of the proof, and where it failed.
@@ -142,19 +164,6 @@ fn say(path: &Path, line: &WrappedLine) {
         proved(line.embedding),
         line.seconds
     ));
-    if line.points_fitted < line.points {
-        output::say(format!(
-            "  {} points were left out: not of the object, hidden from outside, or far from the surface",
-            line.points - line.points_fitted
-        ));
-    }
-    for hole in &line.closed_holes {
-        let [x, y, z] = hole.centre_m;
-        output::say(format!(
-            "  a hole of {:.1} cm² at ({x:.3}, {y:.3}, {z:.3}) m was closed",
-            1e4 * hole.area_m2
-        ));
-    }
 }
 
 fn proved(embedding: &str) -> &'static str {
