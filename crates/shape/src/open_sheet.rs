@@ -29,6 +29,8 @@ pub struct Walls {
     pub thin_share: f64,
     /// Median thickness of these walls, metres; 0 where there are none.
     pub median_thickness_m: f64,
+    /// The same in spacings of the points.
+    pub in_spacings: f64,
     /// Share of the points, 0 to 1, at thin walls without points on the other side: near 1 for the scan
     /// of one side of an object, near 0 for a complete one.
     pub single_sheet_share: f64,
@@ -51,10 +53,12 @@ impl Walls {
             })
             .collect();
         let share = |count: usize| count as f64 / points.len().max(1) as f64;
+        let thickness = median(walls.iter().map(|(wall, _)| *wall).collect());
         Self {
             thin_share: share(walls.len()),
+            median_thickness_m: thickness,
+            in_spacings: thickness / wrap.spacing,
             single_sheet_share: share(walls.iter().filter(|(_, backed)| !backed).count()),
-            median_thickness_m: median(walls.into_iter().map(|(wall, _)| wall).collect()),
         }
     }
 }

@@ -35,8 +35,10 @@ const GAIN: f64 = 0.01;
 const MAPS: [[(f64, f64); 2]; 2] = [[(3.0, 0.3), (3.0, 0.05)], [(10.0, 0.05), (1.0, 0.05)]];
 /// A cloud of which a larger share of the points lies on a single sheet shows one side of its object.
 const MOST_SINGLE_SHEET: f64 = 0.25;
-/// An object with a larger share of its points at thin walls is a shell.
+/// An object with a larger share of its points at thin walls is a shell. Where these are thinner than so
+/// many spacings, one noisy sheet looks the same.
 const MOSTLY: f64 = 0.9;
+const THIN: f64 = 1.5;
 /// So many surfaces of a continuation are tried for a proof.
 const PROOFS: usize = 3;
 /// Anchors move to places of the wrap within so many spacings.
@@ -151,7 +153,7 @@ impl SphericalCloudFit {
                 "{:.0} % of the points lie on a single sheet without an inside; the surface is a shell around them",
                 100.0 * walls.single_sheet_share
             ));
-        } else if walls.thin_share > MOSTLY {
+        } else if walls.thin_share > MOSTLY && walls.in_spacings < THIN {
             notes.push(format!(
                 "the surface is a shell with walls of about {:.1} mm; if the object is solid, the scan shows one side of it only",
                 1e3 * walls.median_thickness_m

@@ -1,6 +1,8 @@
 //! Fits over the sphere without given directions: what is no surface of its points is refused.
 
 use nalgebra::{Point3, Vector3};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use shape::{PointCloud, SphericalCloudError, SphericalSettings, fit_spherical_cloud};
 use sph::direction::even_directions;
 
@@ -17,7 +19,7 @@ fn one_side_of_an_object_is_refused() {
     let half = on_a_sphere(4000, |p| p.z > 0.0);
     let open = on_a_sphere(4000, |p| p.z < 0.6);
     let plate = on_a_sphere(4000, |p| p.z > 0.0);
-    let plate = plate.iter().map(|p| Point3::new(p.x, p.y, 1e-3 * p.x.sin()));
+    let plate = plate.iter().map(|p| Point3::new(p.x, p.y, 0.2 * p.x * p.x));
     for points in [half, open, plate.collect()] {
         let cloud = PointCloud::new(points).unwrap();
         match fit_spherical_cloud(&cloud, &settings) {
@@ -44,15 +46,18 @@ fn the_same_is_kept_with_a_note_where_that_is_wanted() {
 
 #[test]
 fn walls_with_two_sides_are_not_single_sheets() {
-    // Half of a hollow ball with a wall of 1.5 mm.
-    let mut points = on_a_sphere(6000, |p| p.z > 0.0);
-    let inner = on_a_sphere(6000, |p| p.z > 0.0);
-    points.extend(inner.iter().map(|p| p * 0.97));
-    let rim = (0..600_u32).map(|k| {
-        let (angle, r) = (0.377 * f64::from(k), 0.0485 + 2.5e-6 * f64::from(k));
-        Point3::new(r * angle.cos(), r * angle.sin(), 0.0)
-    });
-    points.extend(rim);
+    // Half of a hollow ball with a wall of 3 mm.
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let mut place = |low: f64, high: f64, flat: bool| {
+        let angle = std::f64::consts::TAU * rng.random::<f64>();
+        let z = if flat { 0.0 } else { rng.random::<f64>() };
+        let radius = (low * low + rng.random::<f64>() * (high * high - low * low)).sqrt();
+        let across = (1.0 - z * z).sqrt();
+        Point3::new(across * angle.cos(), across * angle.sin(), z) * radius
+    };
+    let mut points: Vec<_> = (0..5000).map(|_| place(0.05, 0.05, false)).collect();
+    points.extend((0..4400).map(|_| place(0.047, 0.047, false)));
+    points.extend((0..290).map(|_| place(0.047, 0.05, true)));
     let cloud = PointCloud::new(points).unwrap();
     let fit = fit_spherical_cloud(&cloud, &SphericalSettings::new(20)).unwrap();
     assert!(fit.walls.single_sheet_share < 0.1, "{:?}", fit.walls);
