@@ -16,7 +16,7 @@ pub(crate) use grasps::{
     TransferOptions, TransferScheme,
 };
 pub(crate) use hands::{
-    GraspOptions, HandCheckOptions, HandCommand, HandOptions, SynthesizeOptions,
+    GraspOptions, HandCheckOptions, HandCommand, HandInitOptions, HandOptions, SynthesizeOptions,
 };
 pub(crate) use library::{
     LibraryAddOptions, LibraryCommand, LibraryListOptions, LibraryRemoveOptions,

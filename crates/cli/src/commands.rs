@@ -6,6 +6,7 @@ pub(crate) mod eval;
 pub(crate) mod fit;
 pub(crate) mod grasp;
 pub(crate) mod hand_check;
+pub(crate) mod hand_init;
 pub(crate) mod info;
 pub(crate) mod library;
 pub(crate) mod manual;

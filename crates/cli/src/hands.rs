@@ -18,11 +18,7 @@ pub(crate) fn load(options: &HandOptions) -> Result<Hand, Failure> {
     if let Some(hand) = built_in(options)? {
         return Ok(hand);
     }
-    let urdf = &options.hand;
-    let folders = MeshFolders::new(urdf, options.package_root.as_deref())?;
-    let bytes = input::read(urdf)?;
-    let model: HandModel = load_urdf_with_meshes(&urdf_text(&bytes), |name| folders.bytes(name))
-        .map_err(|e| Failure::input(urdf, e))?;
+    let model = model(&options.hand, options.package_root.as_deref())?;
     let path = spec_path(options);
     let spec = HandSpec::from_toml(&spec_text(options)?).map_err(|e| Failure::input(&path, e))?;
     Hand::new(model, &spec).map_err(|e| {
@@ -31,6 +27,14 @@ pub(crate) fn load(options: &HandOptions) -> Result<Hand, Failure> {
             format!("{e}; `moduli hand check` lists everything that is wrong"),
         )
     })
+}
+
+/// The URDF with its meshes.
+pub(crate) fn model(urdf: &Path, package_root: Option<&Path>) -> Result<HandModel, Failure> {
+    let folders = MeshFolders::new(urdf, package_root)?;
+    let bytes = input::read(urdf)?;
+    load_urdf_with_meshes(&urdf_text(&bytes), |name| folders.bytes(name))
+        .map_err(|e| Failure::input(urdf, e))
 }
 
 /// The built-in hand that the options name; it brings its own spec.
@@ -74,7 +78,10 @@ pub(crate) fn spec_text(options: &HandOptions) -> Result<String, Failure> {
     if options.spec.is_none() && !path.exists() {
         return Err(Failure::input(
             &path,
-            "no such file; a hand needs a TOML beside its URDF, or --spec TOML (docs/bring-your-own-hand.md)",
+            format!(
+                "no such file; a hand needs a TOML beside its URDF, or --spec TOML; `moduli hand init {}` writes a first one",
+                options.hand.display()
+            ),
         ));
     }
     text(&path)

@@ -50,6 +50,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Transfer(options) => commands::transfer::run(options, common),
         Command::Synthesize(options) => commands::synthesize::run(options, common),
         Command::Hand(HandCommand::Check(options)) => commands::hand_check::run(options, common),
+        Command::Hand(HandCommand::Init(options)) => commands::hand_init::run(options, common),
         Command::Grasp(options) => commands::grasp::run(options, common),
         Command::Library(command) => commands::library::run(command, common),
         Command::Info(options) => commands::info::run(options, common),

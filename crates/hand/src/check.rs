@@ -12,6 +12,9 @@ use crate::hand::{Finger, Hand, Preshape};
 use crate::kinematics::KinematicsError;
 use crate::model::Geometry;
 
+/// Stations of the closing motion at which tips are checked.
+const CLOSING_STATIONS: usize = 8;
+
 /// The severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
@@ -137,11 +140,13 @@ fn closing_motion(
         return Ok(());
     }
     let before = tip_middle(hand, finger, &model.root_from_links(&preshape.joints)?);
-    let after = tip_middle(hand, finger, &model.root_from_links(&closed)?);
-    let (far, near) = (
-        from_approach(hand, &before).0,
-        from_approach(hand, &after).0,
-    );
+    let far = from_approach(hand, &before).0;
+    let mut near = f64::INFINITY;
+    for station in 1..=CLOSING_STATIONS {
+        let share = station as f64 / CLOSING_STATIONS as f64;
+        let poses = model.root_from_links(&hand.closed(&preshape.joints, share))?;
+        near = near.min(from_approach(hand, &tip_middle(hand, finger, &poses)).0);
+    }
     if near > far + 1e-3 {
         let text = format!(
             "{place}: closing moves the tip away from the line of approach ({:.0} to {:.0} mm); the sign of a ratio may be wrong",

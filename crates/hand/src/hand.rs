@@ -15,9 +15,9 @@ use crate::model::HandModel;
 use crate::tip_model::TipModel;
 pub use groups::FingerGroup;
 pub use jaws::Jaws;
+pub(crate) use resolve::link_shapes;
 use resolve::{
-    approach, fingers, least_fingers, link_shapes, pad_radius, palm, preshapes, separate, standoff,
-    tested_pairs,
+    approach, fingers, least_fingers, pad_radius, palm, preshapes, separate, standoff, tested_pairs,
 };
 
 /// A finger of a [`Hand`].
@@ -63,8 +63,10 @@ pub struct Hand {
 /// Why a spec does not fit its hand.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum HandError {
-    /// The palm is not the root link.
-    #[error("the palm is '{palm}', but the root link of the URDF is '{root}'")]
+    /// The palm does not exist, or fingers of the spec do not hang on it.
+    #[error(
+        "the palm is '{palm}', on which the fingers do not hang; the root link of the URDF is '{root}'"
+    )]
     Palm {
         /// Named palm.
         palm: String,
@@ -185,8 +187,11 @@ pub enum HandError {
 
 impl Hand {
     /// Resolves a spec against a model. Errors name what does not fit.
+    ///
+    /// Where the palm of the spec is not the root link of the model, the hand is the part of the model
+    /// below it, and the palm frame is the frame of that link.
     pub fn new(model: HandModel, spec: &HandSpec) -> Result<Self, HandError> {
-        palm(&model, spec)?;
+        let model = palm(&model, spec)?;
         let shapes = link_shapes(&model)?;
         let mut fingers = fingers(&model, &shapes, &spec.finger)?;
         let groups = groups::groups(&model, &shapes, spec, &mut fingers)?;

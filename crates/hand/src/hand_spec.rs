@@ -16,7 +16,7 @@ pub(crate) const MAX_SPEC_BYTES: usize = 1 << 20;
 pub struct HandSpec {
     /// A short name, used in results.
     pub name: String,
-    /// The palm: the root link of the URDF.
+    /// The palm: the root link of the URDF, or the link of an arm on which the fingers hang.
     pub palm: String,
     /// The direction in the palm frame in which the hand approaches; any length.
     pub approach_axis: [f64; 3],

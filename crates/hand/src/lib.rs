@@ -27,6 +27,7 @@ mod collision;
 mod contact;
 mod hand;
 mod hand_spec;
+mod init;
 mod kinematics;
 mod least_squares;
 mod mesh_file;
@@ -37,6 +38,7 @@ mod support;
 mod synthesis;
 mod tip_model;
 mod urdf;
+mod xml;
 
 pub use alignment::carried_pose;
 pub use built_in::{LoadError, SDH_SPEC, SDH_URDF, schunk_sdh};
@@ -46,6 +48,7 @@ pub use collision::{CollisionObject, Gap, GeometryError, ObjectError, Precision}
 pub use contact::{TipContact, link_contact, tip_contact};
 pub use hand::{Finger, FingerGroup, Hand, HandError, Jaws, Preshape};
 pub use hand_spec::{FingerSpec, HandSpec, PreshapeSpec, SelfDistance, SpecTextError};
+pub use init::{InitError, Proposal, exempt_pairs_text, propose};
 pub use kinematics::KinematicsError;
 pub use mesh_file::{MeshFileError, mesh_vertices};
 pub use model::{Drive, Geometry, HandModel, Joint, JointKind, Link, LinkGeometry};

@@ -1,5 +1,7 @@
 //! The vertices of a collision mesh given as bytes, by the reader of `shape`.
 
+mod collada;
+
 use nalgebra::Point3;
 use shape::io::{Geometry, LoadError, read_cloud};
 
@@ -29,13 +31,16 @@ pub enum MeshFileError {
         /// How many.
         vertices: usize,
     },
+    /// A Collada document without usable geometry.
+    #[error("{0}")]
+    Collada(String),
     /// The file is damaged, has an unsupported format, or is not a mesh.
     #[error(transparent)]
     Load(#[from] LoadError),
 }
 
 /// Vertices of a mesh that a face uses, in the file's unit and order; all vertices of a file without
-/// faces.
+/// faces. A Collada document (DAE) gives the vertices of its scene in metres.
 ///
 /// The format is recognised by the content; where that is ambiguous, by the file name `name`
 /// ([`shape::io::read_cloud`]).
@@ -45,6 +50,9 @@ pub enum MeshFileError {
 pub fn mesh_vertices(bytes: &[u8], name: &str) -> Result<Vec<Point3<f64>>, MeshFileError> {
     if bytes.len() > MAX_MESH_BYTES {
         return Err(MeshFileError::TooLarge { bytes: bytes.len() });
+    }
+    if collada::is_collada(bytes) {
+        return collada::vertices(bytes).map_err(MeshFileError::Collada);
     }
     let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
     let loaded = read_cloud(bytes, extension)?;

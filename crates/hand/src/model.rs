@@ -1,5 +1,7 @@
 //! The hand as a tree of links: joints, limits and collision geometry.
 
+mod subtree;
+
 use nalgebra::{Isometry3, Point3, UnitVector3, Vector3};
 
 /// One piece of collision geometry in its own frame, lengths in metres.

@@ -7,16 +7,16 @@
 mod document;
 mod encoding;
 mod tree;
-mod xml;
 
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use crate::mesh_file::{MeshFileError, mesh_vertices};
 use crate::model::{Geometry, HandModel, LinkGeometry};
+use crate::xml::XmlError;
+pub use crate::xml::{MAX_URDF_BYTES, MAX_URDF_DEPTH, MAX_URDF_ELEMENTS};
 pub use encoding::urdf_text;
 pub(crate) use tree::UNLIMITED;
-pub use xml::{MAX_URDF_BYTES, MAX_URDF_DEPTH, MAX_URDF_ELEMENTS};
 
 /// The largest number of links or of joints accepted.
 pub const MAX_LINKS: usize = 512;
@@ -239,6 +239,22 @@ pub enum UrdfError {
     },
 }
 
+impl From<XmlError> for UrdfError {
+    fn from(error: XmlError) -> Self {
+        match error {
+            XmlError::TooLarge { bytes, limit } => UrdfError::TooLarge { bytes, limit },
+            XmlError::TooDeep { byte, limit } => UrdfError::TooDeep { byte, limit },
+            XmlError::TooMany { count, limit } => UrdfError::TooMany {
+                what: "elements",
+                count,
+                limit,
+            },
+            XmlError::NotXml { byte, what } => UrdfError::NotXml { byte, what },
+            XmlError::Doctype { byte } => UrdfError::Doctype { byte },
+        }
+    }
+}
+
 /// Reads a hand whose collision geometry is made of primitives; meshes are refused by name.
 ///
 ///
@@ -328,7 +344,7 @@ fn geometry(
     piece: &urdf_rs::Geometry,
     resolve: &MeshResolver<'_>,
 ) -> Result<Geometry, UrdfError> {
-    let half = |what, length: f64| Ok(positive(link, what, length)? / 2.0);
+    let half = |what, length: f64| positive(link, what, length).map(|l| l / 2.0);
     Ok(match piece {
         urdf_rs::Geometry::Box { size } => Geometry::Box {
             half_extents: Vector3::new(

@@ -81,6 +81,29 @@ pub(crate) enum HandCommand {
     /// Check the URDF and the TOML of a hand, and write a page with pictures of it.
     #[command(after_help = "Example: moduli hand check gripper.urdf gripper.toml -o gripper.html")]
     Check(HandCheckOptions),
+    /// Write a first TOML for the URDF of a hand: fingers, tips, closing joints with their signs, line of
+    /// approach, pre-shapes and exempt pairs, all found from the geometry.
+    #[command(
+        after_help = "Example: moduli hand init gripper.urdf && moduli grasp scan.ply --hand gripper.urdf"
+    )]
+    Init(HandInitOptions),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct HandInitOptions {
+    /// The URDF.
+    pub(crate) urdf: PathBuf,
+    /// File for the TOML; by default beside the URDF, with the same name, where `--hand` finds it. One that
+    /// exists there already is kept.
+    #[arg(short, long)]
+    pub(crate) output: Option<PathBuf>,
+    /// The link on which the fingers hang. Default: the link from which the ways to the fingers part.
+    #[arg(long, value_name = "LINK")]
+    pub(crate) palm: Option<String>,
+    /// Folder in which `package://` meshes are found; by default that of the URDF and the packages that
+    /// hold it or lie beside it.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) package_root: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

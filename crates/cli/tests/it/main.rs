@@ -7,6 +7,7 @@ mod common;
 mod evidence;
 mod formats;
 mod grippers;
+mod hand_init;
 mod hands;
 mod library;
 mod metrics;

@@ -2,6 +2,7 @@
 
 use nalgebra::Isometry3;
 
+use super::piece::LinkShape;
 use crate::hand::Hand;
 
 /// The first tested pair of links closer than `least`, with its distance.
@@ -38,22 +39,46 @@ fn pair_distance_below(
     b: usize,
     least: f64,
 ) -> Option<f64> {
-    let (first, second) = (&hand.shapes[a], &hand.shapes[b]);
-    let between = (poses[a] * first.centre - poses[b] * second.centre).norm();
-    if between - first.radius - second.radius >= least {
-        return None;
+    hand.shapes[a].distance_below(&poses[a], &hand.shapes[b], &poses[b], least)
+}
+
+impl LinkShape {
+    /// Whether another link is nearer than `least`, metres; both poses in one frame.
+    pub(crate) fn is_near(
+        &self,
+        pose: &Isometry3<f64>,
+        other: &LinkShape,
+        pose_of_other: &Isometry3<f64>,
+        least: f64,
+    ) -> bool {
+        self.distance_below(pose, other, pose_of_other, least)
+            .is_some()
     }
-    let mut nearest = f64::INFINITY;
-    for p in &first.pieces {
-        let world_from_p = poses[a] * p.link_from_piece;
-        for q in &second.pieces {
-            let world_from_q = poses[b] * q.link_from_piece;
-            let centres =
-                (world_from_p.translation.vector - world_from_q.translation.vector).norm();
-            if centres - p.radius - q.radius < least {
-                nearest = nearest.min(p.piece_distance(&world_from_p, q, &world_from_q));
+
+    /// The distance of another link if it is below `least`.
+    fn distance_below(
+        &self,
+        pose: &Isometry3<f64>,
+        other: &LinkShape,
+        pose_of_other: &Isometry3<f64>,
+        least: f64,
+    ) -> Option<f64> {
+        let between = (pose * self.centre - pose_of_other * other.centre).norm();
+        if between - self.radius - other.radius >= least {
+            return None;
+        }
+        let mut nearest = f64::INFINITY;
+        for p in &self.pieces {
+            let world_from_p = pose * p.link_from_piece;
+            for q in &other.pieces {
+                let world_from_q = pose_of_other * q.link_from_piece;
+                let centres =
+                    (world_from_p.translation.vector - world_from_q.translation.vector).norm();
+                if centres - p.radius - q.radius < least {
+                    nearest = nearest.min(p.piece_distance(&world_from_p, q, &world_from_q));
+                }
             }
         }
+        (nearest < least).then_some(nearest)
     }
-    (nearest < least).then_some(nearest)
 }

@@ -14,7 +14,9 @@ impl Hand {
     /// All faults that keep a spec from matching a model, in the order of the spec. Empty if and
     /// only if [`Hand::new`] succeeds.
     pub fn problems(model: &HandModel, spec: &HandSpec) -> Vec<HandError> {
-        let mut found: Vec<HandError> = palm(model, spec).err().into_iter().collect();
+        let mut found = Vec::new();
+        let part = palm(model, spec).map_err(|e| found.push(e));
+        let model = &part.unwrap_or_else(|()| model.clone());
         found.extend(approach(spec).err());
         found.extend(standoff(spec.standoff_m).err());
         for name in spec.self_distance.exempt_pairs.iter().flatten() {

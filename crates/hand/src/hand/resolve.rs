@@ -15,16 +15,19 @@ pub(super) fn bad_number(place: &str, value: f64, wanted: &'static str) -> HandE
     }
 }
 
-/// The palm must be the root link.
-pub(super) fn palm(model: &HandModel, spec: &HandSpec) -> Result<(), HandError> {
-    let root = &model.links[0].name;
-    if *root == spec.palm {
-        return Ok(());
-    }
-    Err(HandError::Palm {
+/// The model below the palm, whose frame is the palm frame.
+pub(super) fn palm(model: &HandModel, spec: &HandSpec) -> Result<HandModel, HandError> {
+    let wrong = || HandError::Palm {
         palm: spec.palm.clone(),
-        root: root.clone(),
-    })
+        root: model.links[0].name.clone(),
+    };
+    let palm = model.link_index(&spec.palm).ok_or_else(wrong)?;
+    let part = model.below(palm);
+    let lost = |name: &String| model.link_index(name).is_some() && part.link_index(name).is_none();
+    if spec.finger.iter().flat_map(|f| &f.tips).any(lost) {
+        return Err(wrong());
+    }
+    Ok(part)
 }
 
 /// Direction and point of the line of approach.
@@ -51,7 +54,7 @@ pub(super) fn standoff([least, greatest]: [f64; 2]) -> Result<(f64, f64), HandEr
     Ok((least, greatest))
 }
 
-pub(super) fn link_shapes(model: &HandModel) -> Result<Vec<LinkShape>, HandError> {
+pub(crate) fn link_shapes(model: &HandModel) -> Result<Vec<LinkShape>, HandError> {
     model
         .links
         .iter()

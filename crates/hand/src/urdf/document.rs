@@ -7,7 +7,7 @@
 use std::fmt::Write;
 
 use super::UrdfError;
-use super::xml::{self, Element};
+use crate::xml::{Element, urdf_root};
 
 /// Reads the elements of a URDF. For a text of another kind the error names the kind.
 pub(super) fn read(text: &str) -> Result<urdf_rs::Robot, UrdfError> {
@@ -17,7 +17,7 @@ pub(super) fn read(text: &str) -> Result<urdf_rs::Robot, UrdfError> {
             advice: "fetch the file with `git lfs pull`",
         });
     }
-    let root = xml::root(text)?;
+    let root = urdf_root(text)?;
     check_root(&root)?;
     check_expanded(&root)?;
     let mut clean = Clean::default();
