@@ -1,7 +1,8 @@
 //! Synthesis: grasps of a hand on an object, found by closing it from sampled poses (Sec. IV-C).
 
 use hand::{
-    ClosingRules, Hand, HandGrasp, PoseSampling, Synthesis, SynthesisError, SynthesisParams,
+    ClosingRules, CollisionObject, Hand, HandGrasp, PoseSampling, Synthesis, SynthesisError,
+    SynthesisParams,
 };
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -82,7 +83,6 @@ impl Measure<'_> {
         poses: &Poses,
         pose_done: &(dyn Fn() + Sync),
     ) -> Result<Synthesis, SynthesisError> {
-        let surface = self.object().shape();
         let preshapes = if poses.preshapes.is_empty() {
             (0..hand.preshapes().len()).collect()
         } else {
@@ -112,7 +112,10 @@ impl Measure<'_> {
         };
         let mut generator = ChaCha8Rng::seed_from_u64(poses.seed);
         generator.set_stream(poses.stream);
-        hand::synthesize_watched(surface, hand, &params, &mut generator, pose_done)
+        let object = CollisionObject::new(self.object().shape())?;
+        let object = object.with_surroundings(self.object().surroundings().clone());
+        let found = hand::synthesize_on(&object, hand, &params, &mut generator, pose_done)?;
+        Ok(found)
     }
 
     fn of_hand_grasp(&self, hand: &Hand, found: &HandGrasp) -> Result<Grasp, Error> {
