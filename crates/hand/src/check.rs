@@ -14,6 +14,8 @@ use crate::hand_spec::exempt_pairs_text;
 use crate::kinematics::KinematicsError;
 use crate::model::Geometry;
 
+/// A joint that closes less than this is at its limit, radians or metres.
+const LEAST_MOTION: f64 = 1e-4;
 /// Stations of the closing motion at which tips are checked.
 const CLOSING_STATIONS: usize = 8;
 
@@ -130,7 +132,8 @@ fn closes(hand: &Hand, preshape: &Preshape, finger: &Finger) -> bool {
     finger.closing.iter().any(|&(driven, ratio)| {
         let (lower, upper) = hand.model.joints[hand.model.driven[driven]].limits;
         let start = preshape.joints[driven];
-        (start + 0.3 * ratio).clamp(lower, upper) != start
+        let end = (start + 0.3 * ratio).clamp(lower, upper);
+        (end - start).abs() > LEAST_MOTION
     })
 }
 

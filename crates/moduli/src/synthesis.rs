@@ -11,6 +11,9 @@ use crate::error::Error;
 use crate::grasp::{Grasp, Grasps, HandPlacement, Source};
 use crate::measure::Measure;
 
+/// How far each tip is from its contact before the fingers close, metres.
+const OPEN: f64 = 0.01;
+
 /// Which poses of a hand are sampled, and which closed poses are kept as grasps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Poses {
@@ -118,6 +121,19 @@ impl Measure<'_> {
         Ok(found)
     }
 
+    /// The pre-shape from which the hand closed, opened until each tip is [`OPEN`] from where it touches;
+    /// the pre-shape itself where the joints or the support leave no room.
+    fn pregrasp(&self, hand: &Hand, found: &HandGrasp) -> Vec<f64> {
+        let start = &hand.preshapes()[found.preshape].joints;
+        let opened = hand.opened_by(start, &found.joints, OPEN);
+        let clearance = self.clearance(hand, &found.object_from_palm, &opened);
+        let least = ClosingRules::default().support_clearance;
+        if clearance.is_some_and(|height| height < least) {
+            return start.clone();
+        }
+        opened
+    }
+
     fn of_hand_grasp(&self, hand: &Hand, found: &HandGrasp) -> Result<Grasp, Error> {
         let source = Source::Synthesis {
             preshape: found.preshape,
@@ -127,7 +143,7 @@ impl Measure<'_> {
         Ok(grasp.with_hand(Some(HandPlacement {
             centred_from_palm: found.object_from_palm,
             joints: found.joints.clone(),
-            pregrasp_joints: hand.preshapes()[found.preshape].joints.clone(),
+            pregrasp_joints: self.pregrasp(hand, found),
             contact_error: 0.0,
             met: true,
             clearance_to_support: self.clearance(hand, &found.object_from_palm, &found.joints),
