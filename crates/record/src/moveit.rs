@@ -21,8 +21,8 @@ const DISTANCE: [f64; 2] = [0.1, 0.05];
 /// ```
 /// let text = br#"{"version": 2, "object": {"name": "cup", "centre_m": [0, 0, 0],
 ///     "r_min_certified_m": 0.01, "r_max_certified_m": 0.02, "centre_of_mass_m": [0, 0, 0],
-///     "volume_m3": 1e-6}, "convention": {"name": "paper", "edge_norm": "unit normal component",
-///     "torque_length_m": 0.01, "centre": "cloud mean", "friction": 1.0, "edges": 10,
+///     "volume_m3": 1e-6}, "convention": {"name": "paper", "edge_norm": "unit_normal_component",
+///     "torque_length_m": 0.01, "centre": "cloud_mean", "friction": 1.0, "edges": 10,
 ///     "not_closed": 0.0}, "grasps": []}"#;
 /// let file = record::GraspsFile::from_json(text).unwrap();
 /// assert!(record::moveit_grasps(&file).ends_with("grasps: []\n"));
