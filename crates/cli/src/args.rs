@@ -1,5 +1,6 @@
 //! The command line.
 
+mod contact;
 mod grasps;
 mod hands;
 mod library;
@@ -16,8 +17,7 @@ pub(crate) use grasps::{
     TransferOptions, TransferScheme,
 };
 pub(crate) use hands::{
-    ExportKind, ExportOptions, GraspOptions, HandCheckOptions, HandCommand, HandInitOptions,
-    HandOptions, SynthesizeOptions,
+    GraspOptions, HandCheckOptions, HandCommand, HandInitOptions, HandOptions, SynthesizeOptions,
 };
 pub(crate) use library::{
     LibraryAddOptions, LibraryCommand, LibraryListOptions, LibraryRemoveOptions,
@@ -113,9 +113,6 @@ pub(crate) enum Command {
         after_help = "Example: moduli library add mine mug.ply && moduli grasp scan.ply --library mine"
     )]
     Library(LibraryCommand),
-    /// Write the grasps of a grasps.json that have a hand for another program.
-    #[command(after_help = "Example: moduli export moveit out/grasps.json -o grasps_moveit.yaml")]
-    Export(ExportOptions),
     /// Describe a shape, a library, a grasps.json, a cloud or a mesh.
     #[command(after_help = "Example: moduli info scan.shape")]
     Info(InfoOptions),

@@ -3,7 +3,6 @@
 pub(crate) mod ascend;
 pub(crate) mod distance;
 pub(crate) mod eval;
-pub(crate) mod export;
 pub(crate) mod fit;
 pub(crate) mod grasp;
 pub(crate) mod hand_check;

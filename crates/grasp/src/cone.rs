@@ -133,6 +133,41 @@ impl Cone {
         dot(&self.base, direction) + square.sqrt()
     }
 
+    /// The same with another friction coefficient than one, and without torsion.
+    pub(crate) fn with_friction(&self, friction: f64) -> Self {
+        let [t, b, twist] = self.axes;
+        Cone {
+            axes: [scale(&t, friction), scale(&b, friction), twist],
+            rounding: self.rounding * friction.max(1.0),
+            limits: [self.limits[0], friction, self.limits[2], self.limits[3]],
+            ..*self
+        }
+    }
+
+    /// How far the normal force alone reaches along a direction.
+    pub(crate) fn height_of_normal(&self, direction: &V6) -> f64 {
+        dot(&self.base, direction)
+    }
+
+    /// How much farther the round cone reaches along a direction than the normal force.
+    pub(crate) fn slope(&self, direction: &V6) -> f64 {
+        norm(&[
+            dot(&self.axes[0], direction),
+            dot(&self.axes[1], direction),
+            dot(&self.axes[2], direction),
+            0.0,
+            0.0,
+            0.0,
+        ])
+    }
+
+    /// How much farther the edges of `circle` reach along a direction than the normal force.
+    pub(crate) fn largest_edge(&self, direction: &V6, circle: &[(f64, f64)]) -> f64 {
+        let [t, b] = [0, 1].map(|k| dot(&self.axes[k], direction));
+        let heights = circle.iter().map(|&(cos, sin)| t * cos + b * sin);
+        heights.fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// The farthest point along `direction` as coordinates along the axes; all zero where every point
     /// is as far.
     pub(crate) fn place(&self, direction: &V6) -> [f64; 3] {

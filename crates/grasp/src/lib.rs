@@ -89,10 +89,11 @@ pub use friction::{cone_edges, cone_edges_from, tangent};
 pub use gradient::{FrameRule, Gradient, facet_gradient};
 pub use grasp_model::GraspModel;
 pub use quality::{
-    ActiveFacet, Carrier, Certificate, CertificateCap, CertificateFacet, Epsilon, FrictionNeeded,
-    Margin, QualityError, Uncertainty, Workspace, closed_radius, epsilon, epsilon_linf,
-    epsilon_of_wrenches, epsilon_with_certificate, friction_needed, lipschitz_constant, margin,
-    min_weight, near_active_facets, robust_quality, smallest_singular_value, volume,
+    ActiveFacet, Carrier, Certificate, CertificateCap, CertificateFacet, Epsilon, FrictionBound,
+    FrictionNeeded, Margin, QualityError, Uncertainty, Workspace, closed_radius, epsilon,
+    epsilon_linf, epsilon_of_wrenches, epsilon_with_certificate, friction_needed,
+    lipschitz_constant, margin, min_weight, near_active_facets, robust_quality,
+    smallest_singular_value, volume,
 };
 pub use resistance::{Resistance, resist};
 pub use wrench::{Wrench, WrenchError, wrench};

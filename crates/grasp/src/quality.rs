@@ -16,7 +16,7 @@ mod workspace;
 pub use certificate::{Certificate, CertificateCap, CertificateFacet, epsilon_with_certificate};
 pub use epsilon::{Epsilon, QualityError, epsilon, epsilon_of_wrenches};
 pub use facet::{ActiveFacet, Carrier};
-pub use friction_needed::{FrictionNeeded, friction_needed};
+pub use friction_needed::{FrictionBound, FrictionNeeded, friction_needed};
 pub use isotropy::smallest_singular_value;
 pub use linf::epsilon_linf;
 pub use margin::{Margin, margin, near_active_facets};

@@ -4,6 +4,7 @@
 //! The format describes one object and one gripper, so grasps without a hand are left out. It holds
 //! poses and joint values and no contacts: these follow from the surface and the hand.
 
+mod error;
 mod read;
 mod yaml;
 
@@ -12,7 +13,8 @@ use std::fmt::Write;
 
 use crate::grasps::{GraspsFile, HandRecord, JointRecord};
 
-pub use read::{IsaacError, IsaacFile, IsaacGrasp};
+pub use error::IsaacError;
+pub use read::{IsaacFile, IsaacGrasp};
 
 /// The YAML text: every grasp that has a hand, by rank, as `grasp_0`, `grasp_1`, …
 ///
@@ -79,7 +81,7 @@ fn joints(text: &mut String, key: &str, values: &BTreeMap<String, JointRecord>) 
 
 /// The shortest decimal number that reads back as the same value, with a decimal point and without
 /// an exponent, because readers of YAML 1.1 read `1e-7` as a string.
-pub(crate) fn number(value: f64) -> String {
+fn number(value: f64) -> String {
     // Adding 0 turns −0 into 0.
     let digits = (value + 0.0).to_string();
     if digits.contains('.') {
@@ -90,6 +92,6 @@ pub(crate) fn number(value: f64) -> String {
 }
 
 /// A double-quoted scalar; a JSON string is also a YAML one.
-pub(crate) fn quoted(text: &str) -> String {
+fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }

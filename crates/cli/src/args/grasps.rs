@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 use hand::TipModel;
 use serde::Serialize;
 
+use super::contact::contact_option;
 use super::{ConventionOptions, HandOptions, ReadingOptions};
 
 #[derive(Debug, Args)]
@@ -61,22 +62,6 @@ pub(crate) enum Metric {
     MinWeight,
     /// The least friction coefficient at which the grasp is force-closed.
     FrictionNeeded,
-}
-
-/// A contact model and its size in metres.
-pub(super) fn contact_option(text: &str) -> Result<TipModel, String> {
-    let radius = |text: &str| {
-        let radius = text.parse::<f64>().ok();
-        radius
-            .filter(|r| r.is_finite() && *r > 0.0)
-            .ok_or_else(|| format!("`{text}` is not a radius; expected metres above 0"))
-    };
-    match text.split_once(':') {
-        None if text == "point" => Ok(TipModel::Point),
-        Some(("soft", size)) => radius(size).map(|radius| TipModel::Soft { radius }),
-        Some(("patch", size)) => radius(size).map(|radius| TipModel::Patch { radius }),
-        _ => Err("expected `point`, `soft:RADIUS` or `patch:RADIUS`".to_owned()),
-    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

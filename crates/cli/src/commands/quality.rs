@@ -9,6 +9,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use grasp::{CentreRule, Contact, Convention, Epsilon, Grasp, GraspModel, TangentRule, Workspace};
+use hand::TipModel;
 use moduli::Metrics;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -25,6 +26,18 @@ const CHUNK: usize = 256;
 const FEW: usize = 20;
 /// The largest friction coefficient that `friction-needed` tries.
 const MOST_FRICTION: f64 = 100.0;
+
+/// The grasps of a file.
+struct GraspSet {
+    grasps: Vec<Grasp>,
+    /// The convention that the file names.
+    rule: Option<Convention>,
+    /// The convention of the options resolved on the object, if the object is known.
+    resolved: Option<Convention>,
+    /// The contact model of the file.
+    tips: TipModel,
+    warnings: Vec<String>,
+}
 
 #[derive(Serialize)]
 struct QualityLine {
@@ -156,16 +169,20 @@ fn measured(
         (Metric::Linf, _) => (grasp::epsilon_linf(model, work)?, None),
         _ => (grasp::epsilon(model, work)?, None),
     };
-    let exact = match options.metric {
+    let cells = match options.metric {
         Metric::Epsilon | Metric::Linf => {
             let ends = [found.value(model.convention), found.lower, found.upper];
             let row = Row::new(&found, ends.map(Some).to_vec());
             return Ok(Row { certificate, ..row });
         }
-        Metric::MinWeight => grasp::min_weight(model)?,
-        Metric::FrictionNeeded => grasp::friction_needed(model, MOST_FRICTION, work)?.closure,
+        Metric::MinWeight => vec![grasp::min_weight(model)?; 3],
+        Metric::FrictionNeeded => {
+            let needed = grasp::friction_needed(model, MOST_FRICTION, work)?;
+            let below = needed.closure.map(|_| needed.no_closure_below.friction);
+            vec![needed.closure, below, needed.closure]
+        }
     };
-    let row = Row::new(&found, vec![exact; 3]);
+    let row = Row::new(&found, cells);
     Ok(Row {
         converged: true,
         ..row

@@ -54,8 +54,7 @@ fn list<'a>(proof: &'a Value, key: &str) -> impl Iterator<Item = &'a Value> {
 
 /// Checks a certificate; `edges` is the number of edges of a pyramid, or none.
 fn check(proof: &Value, cones: &[Cone], edges: Option<usize>) {
-    let [lower, upper, rounding] =
-        ["lower", "upper", "rounding"].map(|k| proof[k].as_f64().unwrap());
+    let upper = proof["upper"].as_f64().unwrap();
     let points: Vec<V> = match edges {
         Some(count) => (0..count)
             .map(|j| (TAU * j as f64 / count as f64).sin_cos())
@@ -95,7 +94,12 @@ fn check(proof: &Value, cones: &[Cone], edges: Option<usize>) {
         let beyond = |c: &V| (w / w.norm() + c).norm() <= 1e-9 && w.norm() > 1.0;
         assert!(wrench || domain.iter().any(beyond), "{w}");
     }
-    // The lower end: a closed surface around 0 whose facets are too far, in a cap, or not in the domain.
+    check_surface(proof, cones, &vertices, &domain);
+}
+
+/// The lower end: a closed surface around 0 whose facets are far enough, in a cap, or not in the domain.
+fn check_surface(proof: &Value, cones: &[Cone], vertices: &[V], domain: &[V]) {
+    let [lower, rounding] = ["lower", "rounding"].map(|k| proof[k].as_f64().unwrap());
     let caps: Vec<(V, f64)> = list(proof, "caps")
         .map(|cap| (vector(&cap["direction"]), proved_angle(cap, cones, lower)))
         .collect();
@@ -136,6 +140,36 @@ fn check(proof: &Value, cones: &[Cone], edges: Option<usize>) {
     );
 }
 
+/// A point that touches, with A N Aᵀ.
+struct Part {
+    weight: f64,
+    p: V,
+    bend: Matrix6<f64>,
+    rim: bool,
+}
+
+fn parts(cap: &Value, cones: &[Cone], u: &V, sin: f64) -> Vec<Part> {
+    list(cap, "points")
+        .map(|point| {
+            let cone = &cones[point["contact"].as_u64().unwrap() as usize];
+            let m = [0, 1].map(|k| point["place"][k].as_f64().unwrap());
+            let length = m[0].hypot(m[1]).min(1.0);
+            let [a, b] = cone.axes;
+            let inverse = if length > 0.0 { 1.0 / length } else { 0.0 };
+            let along = (a * m[0] + b * m[1]) * inverse;
+            let all = a * a.transpose() + b * b.transpose();
+            let slope = a.dot(u).hypot(b.dot(u)) + sin * all.symmetric_eigenvalues().max().sqrt();
+            let bend = all * 2.0 * (1.0 - length) + (all - along * along.transpose()) * length;
+            Part {
+                weight: point["weight"].as_f64().unwrap(),
+                p: cone.base + a * m[0] + b * m[1],
+                bend: bend / slope,
+                rim: length >= 0.999,
+            }
+        })
+        .collect()
+}
+
 /// The angle of a cap, if h ≥ `lower` in it follows from its points, as `cone::cap` says; otherwise 0.
 ///
 /// With p = base + A m of weights λ, u₀ the direction, g = Σ λ p, d = p − g, N = 2(1 − |m|)/S +
@@ -145,31 +179,7 @@ fn check(proof: &Value, cones: &[Cone], edges: Option<usize>) {
 fn proved_angle(cap: &Value, cones: &[Cone], lower: f64) -> f64 {
     let (u, angle) = (vector(&cap["direction"]), cap["angle"].as_f64().unwrap());
     let (sin, cos) = angle.sin_cos();
-    struct Part {
-        weight: f64,
-        p: V,
-        bend: Matrix6<f64>,
-        rim: bool,
-    }
-    let parts: Vec<Part> = list(cap, "points")
-        .map(|point| {
-            let cone = &cones[point["contact"].as_u64().unwrap() as usize];
-            let m = [0, 1].map(|k| point["place"][k].as_f64().unwrap());
-            let length = m[0].hypot(m[1]).min(1.0);
-            let [a, b] = cone.axes;
-            let inverse = if length > 0.0 { 1.0 / length } else { 0.0 };
-            let along = (a * m[0] + b * m[1]) * inverse;
-            let all = a * a.transpose() + b * b.transpose();
-            let slope = a.dot(&u).hypot(b.dot(&u)) + sin * all.symmetric_eigenvalues().max().sqrt();
-            let bend = all * 2.0 * (1.0 - length) + (all - along * along.transpose()) * length;
-            Part {
-                weight: point["weight"].as_f64().unwrap(),
-                p: cone.base + a * m[0] + b * m[1],
-                bend: bend / slope,
-                rim: length >= 0.999,
-            }
-        })
-        .collect();
+    let parts = parts(cap, cones, &u, sin);
     let g: V = parts.iter().map(|part| part.p * part.weight).sum();
     let nu = g.dot(&u);
     let rest: f64 = parts

@@ -5,7 +5,6 @@ mod certificates;
 mod commands;
 mod common;
 mod evidence;
-mod export;
 mod formats;
 mod grippers;
 mod hand_init;

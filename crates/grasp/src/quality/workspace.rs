@@ -2,7 +2,7 @@
 
 use super::facet::ActiveFacet;
 use crate::cone::{Cone, RoundSource, toward};
-use crate::convention::Edges;
+use crate::convention::{Convention, Edges};
 use crate::friction::angle;
 use crate::grasp_model::GraspModel;
 use crate::hull::min_norm::{Effort, Nearest};
@@ -17,6 +17,9 @@ use crate::wrench::{Wrench, WrenchError};
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     pub(crate) cones: Vec<Cone>,
+    /// The cones at a friction coefficient of one, and their number of edges, 0 for round ones.
+    unit_cones: Vec<Cone>,
+    edges: usize,
     pub(crate) points: PointSet,
     /// The contact of each point.
     pub(crate) owners: Vec<u32>,
@@ -126,6 +129,61 @@ impl Workspace {
         Ok(())
     }
 
+    /// Lays out a grasp whose friction is changed by [`Workspace::set_friction`].
+    pub(crate) fn load_for_friction(&mut self, model: &GraspModel<'_>) -> Result<(), WrenchError> {
+        self.load(model)?;
+        let unit = Convention {
+            friction: 1.0,
+            ..model.convention.clone()
+        };
+        self.load(&GraspModel {
+            convention: &unit,
+            ..*model
+        })?;
+        self.unit_cones.clone_from(&self.cones);
+        self.edges = match unit.edges {
+            Edges::Polygon(count) => count,
+            Edges::Round { .. } => 0,
+        };
+        Ok(())
+    }
+
+    /// Gives all cones that were laid out a friction coefficient.
+    pub(crate) fn set_friction(&mut self, friction: f64) {
+        self.fits = false;
+        for (cone, unit) in self.cones.iter_mut().zip(&self.unit_cones) {
+            *cone = unit.with_friction(friction);
+        }
+        let roundings = self.cones.iter().map(|c| c.rounding);
+        self.wrench_rounding = roundings.fold(0.0, f64::max);
+        if !self.round {
+            self.lay_out_points(self.edges);
+        }
+    }
+
+    /// The friction up to which no wrench reaches farther than 0 along a direction, infinite where none
+    /// ever does. Contacts whose wrenches are orthogonal to it up to rounding are left out.
+    pub(crate) fn separates_until(&self, direction: &V6) -> f64 {
+        let ratio = |cone: &Cone| {
+            let along = cone.height_of_normal(direction);
+            let across = match self.round {
+                true => cone.slope(direction),
+                false => cone.largest_edge(direction, &self.circle),
+            };
+            if along.abs().max(across) <= ORTHOGONAL * cone.reach() {
+                f64::INFINITY
+            } else if along > 0.0 {
+                0.0
+            } else {
+                -along / across
+            }
+        };
+        self.unit_cones
+            .iter()
+            .map(ratio)
+            .fold(f64::INFINITY, f64::min)
+    }
+
     pub(crate) fn add_cone(&mut self, cone: Cone) {
         self.wrench_rounding = self.wrench_rounding.max(cone.rounding);
         self.cones.push(cone);
@@ -217,19 +275,6 @@ impl Workspace {
         self.wrench_rounding + HEIGHT_ROUNDING * self.reach()
     }
 
-    /// Whether a hyperplane keeps the origin from what was laid out, by more than `tolerance`.
-    pub(crate) fn separate(&mut self, tolerance: f64) -> Nearest {
-        let corral = &mut self.search.corral;
-        if self.round {
-            let start = toward(&self.cones);
-            let mut source = RoundSource(&self.cones);
-            corral.nearest(&mut source, &start, Effort::Separate, tolerance)
-        } else {
-            let start = *self.points.sum();
-            corral.nearest(&mut &self.points, &start, Effort::Separate, tolerance)
-        }
-    }
-
     /// The point nearest to the origin of what was laid out.
     pub(crate) fn nearest(&mut self) -> Nearest {
         let tolerance = 1e-14 * self.reach();
@@ -308,6 +353,9 @@ impl Workspace {
         }
     }
 }
+
+/// Wrenches reach this far, relative to the longest, along directions that are orthogonal to them.
+const ORTHOGONAL: f64 = 1e-12;
 
 /// Rounding of a height, relative to the longest wrench.
 const HEIGHT_ROUNDING: f64 = 12.0 * f64::EPSILON;

@@ -7,6 +7,7 @@ mod exact;
 mod families;
 mod following;
 mod forces;
+mod friction;
 mod gradient;
 mod properties;
 mod reference;

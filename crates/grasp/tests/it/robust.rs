@@ -2,7 +2,7 @@
 
 use grasp::{
     Contact, ContactModel, Convention, EdgeNorm, Edges, GraspModel, TorqueLength, Uncertainty,
-    Workspace, epsilon, friction_needed, robust_quality, wrenches,
+    Workspace, epsilon, robust_quality, wrenches,
 };
 use nalgebra::{Point3, Rotation3, Unit, UnitVector3, Vector3};
 use rand::RngExt;
@@ -228,34 +228,4 @@ fn a_patch_is_its_corners() {
             assert!(a.iter().zip(&b).all(|(a, b)| (a - b).norm() <= 1e-14));
         }
     }
-}
-
-#[test]
-fn friction_needed_of_known_grasps() {
-    let centre = Point3::origin();
-    let mut workspace = Workspace::new();
-    let convention = unit(0.5, Edges::Round { tolerance: 1e-4 });
-    // Two opposite contacts are in balance without friction and never closed.
-    let pair = opposite();
-    let model = GraspModel::new(&pair, &centre, &convention);
-    let needed = friction_needed(&model, 10.0, &mut workspace).unwrap();
-    assert!(needed.balance.is_some_and(|mu| mu <= 1e-6), "{needed:?}");
-    assert_eq!(needed.closure, None);
-    // Tilted by 0.3 rad towards each other the line between them lies on the cones at tan 0.3.
-    let tilted = [1.0, -1.0].map(|s| Contact {
-        position: Point3::new(0.03 * s, 0.0, 0.0),
-        inward_normal: Unit::new_normalize(Vector3::new(-s * 0.3_f64.cos(), 0.3_f64.sin(), 0.0)),
-    });
-    let model = GraspModel::new(&tilted, &centre, &convention);
-    let needed = friction_needed(&model, 10.0, &mut workspace).unwrap();
-    let balance = needed.balance.unwrap();
-    assert!((balance - 0.3_f64.tan()).abs() <= 1e-6, "{balance}");
-    // Three on a plane that press the same way cannot be in balance below a large μ.
-    let up = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]].map(|[x, y]| Contact {
-        position: Point3::new(x, y, 0.0),
-        inward_normal: Vector3::z_axis(),
-    });
-    let model = GraspModel::new(&up, &centre, &convention);
-    let needed = friction_needed(&model, 10.0, &mut workspace).unwrap();
-    assert_eq!((needed.balance, needed.closure), (None, None));
 }

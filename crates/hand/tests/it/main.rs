@@ -11,7 +11,5 @@ mod hostile_urdf;
 mod init;
 mod kinematics;
 mod reach;
-mod shipped_specs;
-mod surroundings;
 mod synthesis;
 mod urdf_files;

@@ -2,7 +2,7 @@
 
 use yaml_rust2::parser::{Event, Parser};
 
-use super::IsaacError;
+use super::error::IsaacError;
 
 /// Deepest nesting that is read; the format needs four levels.
 const DEEPEST: usize = 16;

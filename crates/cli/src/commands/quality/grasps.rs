@@ -8,6 +8,7 @@ use nalgebra::{Point3, UnitVector3, Vector3};
 use record::{GraspsFile, IsaacFile};
 use run::npy::Table;
 
+use super::GraspSet;
 use super::isaac::read_isaac;
 use crate::args::QualityOptions;
 use crate::failure::Failure;
@@ -21,18 +22,6 @@ const UNIT: f64 = 1e-6;
 const OFF_SURFACE: f64 = 5e-3;
 
 const EXPECTED: &str = "expected a grasps.json, an isaac_grasp YAML, or rows of numbers as an array of NumPy or as text (.csv)";
-
-/// The grasps of a file.
-pub(super) struct GraspSet {
-    pub(super) grasps: Vec<Grasp>,
-    /// The convention that the file names.
-    pub(super) rule: Option<Convention>,
-    /// The convention of the options resolved on the object, if the object is known.
-    pub(super) resolved: Option<Convention>,
-    /// The contact model of the file.
-    pub(super) tips: TipModel,
-    pub(super) warnings: Vec<String>,
-}
 
 /// The grasps of a file, whose content decides how it is read: a `grasps.json`, an array of NumPy, or
 /// a text of rows of numbers.

@@ -7,7 +7,7 @@ use hand::Hand;
 use moduli::{FoundContacts, HandContacts, Object};
 use record::{IsaacFile, IsaacGrasp};
 
-use super::grasps::GraspSet;
+use super::GraspSet;
 use crate::args::QualityOptions;
 use crate::failure::Failure;
 use crate::{hands, input};
