@@ -17,7 +17,8 @@ pub(crate) use grasps::{
     TransferOptions, TransferScheme,
 };
 pub(crate) use hands::{
-    GraspOptions, HandCheckOptions, HandCommand, HandInitOptions, HandOptions, SynthesizeOptions,
+    ExportKind, ExportOptions, GraspOptions, HandCheckOptions, HandCommand, HandInitOptions,
+    HandOptions, SynthesizeOptions,
 };
 pub(crate) use library::{
     LibraryAddOptions, LibraryCommand, LibraryListOptions, LibraryRemoveOptions,
@@ -113,6 +114,9 @@ pub(crate) enum Command {
         after_help = "Example: moduli library add mine mug.ply && moduli grasp scan.ply --library mine"
     )]
     Library(LibraryCommand),
+    /// Write the grasps of a grasps.json that have a hand for another program.
+    #[command(after_help = "Example: moduli export moveit out/grasps.json -o grasps_moveit.yaml")]
+    Export(ExportOptions),
     /// Describe a shape, a library, a grasps.json, a cloud or a mesh.
     #[command(after_help = "Example: moduli info scan.shape")]
     Info(InfoOptions),

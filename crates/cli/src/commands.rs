@@ -3,6 +3,7 @@
 pub(crate) mod ascend;
 pub(crate) mod distance;
 pub(crate) mod eval;
+pub(crate) mod export;
 pub(crate) mod fit;
 pub(crate) mod grasp;
 pub(crate) mod hand_check;

@@ -75,6 +75,9 @@ pub(crate) fn spec_path(options: &HandOptions) -> PathBuf {
 /// The text of the TOML.
 pub(crate) fn spec_text(options: &HandOptions) -> Result<String, Failure> {
     let path = spec_path(options);
+    if let Some(text) = carried_spec(&path) {
+        return Ok(text.to_owned());
+    }
     if options.spec.is_none() && !path.exists() {
         return Err(Failure::input(
             &path,
@@ -85,6 +88,17 @@ pub(crate) fn spec_text(options: &HandOptions) -> Result<String, Failure> {
         ));
     }
     text(&path)
+}
+
+/// The TOML that moduli carries under a name, unless there is a file of that name.
+fn carried_spec(path: &Path) -> Option<&'static str> {
+    if path.exists() {
+        return None;
+    }
+    let found = fixtures::HAND_SPECS
+        .iter()
+        .find(|(name, _)| Path::new(name) == path);
+    found.map(|(_, text)| *text)
 }
 
 /// The text of a TOML file.

@@ -53,6 +53,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Hand(HandCommand::Init(options)) => commands::hand_init::run(options, common),
         Command::Grasp(options) => commands::grasp::run(options, common),
         Command::Library(command) => commands::library::run(command, common),
+        Command::Export(options) => commands::export::run(options, common),
         Command::Info(options) => commands::info::run(options, common),
         Command::Completions(options) => commands::manual::completions(options),
         Command::Man(options) => commands::manual::pages(options),

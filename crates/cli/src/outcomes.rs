@@ -36,8 +36,19 @@ pub(crate) fn why_none(outcomes: &OutcomeCounts, hand: &Hand, tips: TipModel) ->
         "below_support" => {
             "the object may lie too low for the hand, or stand on no plane (--support none) or on another one (--support A,B,C,D)"
         }
+        "obstacle" => {
+            "other pieces of the scene are in the way of the hand; --scene off takes all points for the object"
+        }
+        "in_scan" => {
+            "the fitted surface lies inside the scan there, by more than the noise; a fit of a higher degree (--degree) or `--model spherical` may describe it better"
+        }
         "base_near_object" | "part_near_object" | "starts_in_object" => {
             "the object may be too large for the hand, or the least stand-off (standoff_m of the TOML) too small"
+        }
+        "tip_did_not_arrive"
+            if hand.fingers().len() > 2 && hand.least_fingers() == hand.fingers().len() =>
+        {
+            "every finger must touch, since the TOML does not say otherwise (least_fingers = 2 or more accepts fewer); or the object may be too small or too thin for the hand, or the stand-off (standoff_m of the TOML) too large"
         }
         "tip_did_not_arrive" | "no_contact" => {
             "the object may be too small or too thin for the hand, or the stand-off (standoff_m of the TOML) too large"

@@ -6,7 +6,7 @@ use nalgebra::{Isometry3, Point3, Vector3};
 use record::GraspsFile;
 use record::grasps::{ConventionRecord, EdgesRecord, JointRecord, JointUnit, SourceRecord};
 use report::{GraspPage, Mesh, PageGrasp, WeakestWrench, grasp_page};
-use shape::{PointCloud, TriangleMesh};
+use shape::{PointCloud, Support, TriangleMesh};
 
 use crate::failure::Failure;
 
@@ -14,6 +14,11 @@ use crate::failure::Failure;
 const MESH: usize = 100;
 /// Number of grasps that are drawn with their hand.
 const HANDS: usize = 12;
+
+/// Corners of the disc that stands for the support plane.
+const CORNERS: u32 = 64;
+/// The disc is this many times as wide as the object seen from above.
+const WIDER: f64 = 1.5;
 
 /// The whole page, in the frame of the cloud; `more` are lines at the end of its head.
 pub(crate) fn render(
@@ -51,17 +56,27 @@ pub(crate) fn render(
     subtitle_lines.extend(more);
     let warnings = object.report().warnings.iter();
     subtitle_lines.extend(warnings.map(|w| format!("Warning: {w}.")));
+    let vertices: Vec<Point3<f64>> = mesh
+        .vertices
+        .iter()
+        .map(|p| object.frame().to_cloud(p))
+        .collect();
+    let mut drawn = Mesh {
+        vertices: vertices.iter().map(|p| (*p).into()).collect(),
+        triangles: mesh.triangles,
+    };
+    if let Some(support) = measure.support() {
+        let in_cloud = object.frame().plane_to_cloud(&support);
+        drawn.append(&ground(&in_cloud, &vertices));
+        subtitle_lines.push(
+            "The disc below the object is the plane on which it stands; hands stay above it."
+                .to_owned(),
+        );
+    }
     let page = GraspPage {
         title: object.name().to_owned(),
         subtitle_lines,
-        mesh: Mesh {
-            vertices: mesh
-                .vertices
-                .iter()
-                .map(|p| object.frame().to_cloud(p).into())
-                .collect(),
-            triangles: mesh.triangles,
-        },
+        mesh: drawn,
         cloud: cloud.map_or_else(Vec::new, |cloud| {
             cloud.points().iter().map(|p| (*p).into()).collect()
         }),
@@ -69,6 +84,27 @@ pub(crate) fn render(
         grasps: grasps.collect(),
     };
     grasp_page(&page).map_err(|e| Failure::other(format!("cannot draw the page: {e}")))
+}
+
+/// A disc of the support plane below the vertices of an object.
+fn ground(support: &Support, vertices: &[Point3<f64>]) -> Mesh {
+    let foot = |p: &Point3<f64>| p - support.normal.into_inner() * support.height(p);
+    let count = vertices.len().max(1) as f64;
+    let sum: Vector3<f64> = vertices.iter().map(|p| foot(p).coords).sum();
+    let middle = Point3::from(sum / count);
+    let reach = vertices.iter().map(|p| (foot(p) - middle).norm());
+    let radius = WIDER * reach.fold(0.0, f64::max);
+    let (a, b) = sph::direction::tangent_frame(&support.normal);
+    let rim = (0..CORNERS).map(|k| {
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(CORNERS)).sin_cos();
+        (middle + (a * cos + b * sin) * radius).into()
+    });
+    Mesh {
+        vertices: std::iter::once(middle.into()).chain(rim).collect(),
+        triangles: (0..CORNERS)
+            .map(|k| [0, 1 + k, 1 + (k + 1) % CORNERS])
+            .collect(),
+    }
 }
 
 /// Distance of a point from the nearest point of the cloud, metres.

@@ -2,6 +2,7 @@
 
 mod units;
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -9,9 +10,12 @@ use shape::TriangleMesh;
 
 use crate::collision::all_close_pairs;
 use crate::hand::{Finger, Hand, Preshape};
+use crate::hand_spec::exempt_pairs_text;
 use crate::kinematics::KinematicsError;
 use crate::model::Geometry;
 
+/// A joint that closes less than this is at its limit, radians or metres.
+const LEAST_MOTION: f64 = 1e-4;
 /// Stations of the closing motion at which tips are checked.
 const CLOSING_STATIONS: usize = 8;
 
@@ -52,14 +56,23 @@ impl fmt::Display for Finding {
 /// of URDF and spec are errors of [`Hand::new`].
 pub fn check_hand(hand: &Hand, self_clearance: f64) -> Result<Vec<Finding>, KinematicsError> {
     let mut findings = Vec::new();
+    let mut near = BTreeSet::new();
     for preshape in hand.preshapes() {
         let poses = hand.model().root_from_links(&preshape.joints)?;
-        near_parts(hand, preshape, &poses, self_clearance, &mut findings);
-        for finger in hand.fingers() {
+        near.extend(near_parts(
+            hand,
+            preshape,
+            &poses,
+            self_clearance,
+            &mut findings,
+        ));
+        idle_fingers(hand, preshape, &mut findings);
+        for finger in hand.fingers().iter().filter(|f| closes(hand, preshape, f)) {
             closing_motion(hand, preshape, finger, &mut findings)?;
         }
         reach(hand, preshape, &poses, &mut findings);
     }
+    pairs_to_exempt(hand, &near, &mut findings);
     geometry(hand, &mut findings);
     units::limits(hand, &mut findings);
     units::meshes(hand, &mut findings);
@@ -77,9 +90,10 @@ fn near_parts(
     poses: &[Isometry3<f64>],
     least: f64,
     findings: &mut Vec<Finding>,
-) {
+) -> Vec<(usize, usize)> {
     let links = hand.model().links();
-    for (a, b, gap) in all_close_pairs(hand, poses, least) {
+    let close = all_close_pairs(hand, poses, least);
+    for &(a, b, gap) in &close {
         let text = format!(
             "pre-shape '{}': '{}' and '{}' are {:.1} mm apart, less than {:.1} mm; exempt the pair or open the pre-shape",
             preshape.name,
@@ -94,6 +108,51 @@ fn near_parts(
         } else {
             Severity::Error
         };
+        add(findings, severity, text);
+    }
+    close.into_iter().map(|(a, b, _)| (a, b)).collect()
+}
+
+/// The lines for the spec that exempt pairs of links.
+fn pairs_to_exempt(hand: &Hand, near: &BTreeSet<(usize, usize)>, findings: &mut Vec<Finding>) {
+    if near.is_empty() {
+        return;
+    }
+    let name = |l: usize| hand.model().links()[l].name.clone();
+    let pairs: Vec<[String; 2]> = near.iter().map(|&(a, b)| [name(a), name(b)]).collect();
+    let text = format!(
+        "if these parts lie side by side by construction, add them under [self_distance]:\n{}",
+        exempt_pairs_text(&pairs).trim_end()
+    );
+    add(findings, Severity::Note, text);
+}
+
+/// Whether a closing joint of a finger can move from a pre-shape.
+fn closes(hand: &Hand, preshape: &Preshape, finger: &Finger) -> bool {
+    finger.closing.iter().any(|&(driven, ratio)| {
+        let (lower, upper) = hand.model.joints[hand.model.driven[driven]].limits;
+        let start = preshape.joints[driven];
+        let end = (start + 0.3 * ratio).clamp(lower, upper);
+        (end - start).abs() > LEAST_MOTION
+    })
+}
+
+/// Fingers that cannot close touch nothing; without enough others there is no grasp.
+fn idle_fingers(hand: &Hand, preshape: &Preshape, findings: &mut Vec<Finding>) {
+    let able = |f: &&Finger| closes(hand, preshape, f);
+    let working = hand.fingers().iter().filter(able).count();
+    let (severity, rest) = if working < hand.least_fingers() {
+        let needed = hand.least_fingers();
+        let rest = format!("{working} of the {needed} fingers that a grasp needs are left");
+        (Severity::Error, rest)
+    } else {
+        (Severity::Warning, "the others are enough".to_owned())
+    };
+    for finger in hand.fingers().iter().filter(|f| !able(f)) {
+        let text = format!(
+            "pre-shape '{}', finger '{}': every closing joint is at its limit, the finger cannot close; {rest}",
+            preshape.name, finger.name
+        );
         add(findings, severity, text);
     }
 }
@@ -125,20 +184,7 @@ fn closing_motion(
     findings: &mut Vec<Finding>,
 ) -> Result<(), KinematicsError> {
     let model = hand.model();
-    let mut closed = preshape.joints.clone();
-    let mut moves = false;
-    for &(driven, ratio) in &finger.closing {
-        let (lower, upper) = model.joints[model.driven[driven]].limits;
-        let wanted = (closed[driven] + 0.3 * ratio).clamp(lower, upper);
-        moves |= wanted != closed[driven];
-        closed[driven] = wanted;
-    }
     let place = format!("pre-shape '{}', finger '{}'", preshape.name, finger.name);
-    if !moves {
-        let text = format!("{place}: every closing joint is at its limit, the finger cannot close");
-        add(findings, Severity::Error, text);
-        return Ok(());
-    }
     let before = tip_middle(hand, finger, &model.root_from_links(&preshape.joints)?);
     let far = from_approach(hand, &before).0;
     let mut near = f64::INFINITY;

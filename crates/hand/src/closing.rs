@@ -1,6 +1,7 @@
 //! Closing the fingers of a hand on an object without penetration.
 
 mod above;
+mod around;
 mod group;
 mod wrapping;
 
@@ -55,6 +56,16 @@ impl Default for ClosingRules {
 pub enum Rejection {
     /// A link is below the support plane, or too near to it.
     BelowSupport {
+        /// The link.
+        link: usize,
+    },
+    /// A link is too near to another piece of the scene.
+    Obstacle {
+        /// The link.
+        link: usize,
+    },
+    /// A link is inside the scan of the object, outside of the fitted surface.
+    InScan {
         /// The link.
         link: usize,
     },
@@ -141,6 +152,7 @@ pub fn close_hand(
     hand.model
         .update_links(joints, links, &mut state.object_from_links);
     above::check_all(hand, &state.object_from_links, rules)?;
+    around::check_open(object, hand, &state.object_from_links)?;
     check_base(object, hand, &state.object_from_links, rules)?;
     let mut missing = None;
     for group in &hand.groups {
@@ -175,7 +187,7 @@ pub fn close_hand(
     above::check_all(hand, &state.object_from_links, rules)?;
     match first_close_pair(hand, &state.object_from_links, rules.self_clearance) {
         Some((first, second, _)) => Err(Rejection::PartsNear { first, second }),
-        None => Ok(state),
+        None => around::check_closed(object, hand, joints, &state).map(|()| state),
     }
 }
 

@@ -7,6 +7,7 @@ mod object;
 mod piece;
 mod piece_frame;
 mod self_distance;
+mod surroundings;
 mod tree;
 
 pub use gap::Gap;
@@ -15,3 +16,4 @@ pub use object::{CollisionObject, ObjectError, Precision};
 pub use piece::GeometryError;
 pub(crate) use piece::{ConvexPiece, LinkShape, check_hull};
 pub(crate) use self_distance::{all_close_pairs, first_close_pair};
+pub use surroundings::{PointTree, Surroundings};

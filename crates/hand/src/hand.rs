@@ -20,6 +20,10 @@ use resolve::{
     approach, fingers, least_fingers, pad_radius, palm, preshapes, separate, standoff, tested_pairs,
 };
 
+/// Fingers are opened in steps of this, up to the most, units of closing.
+const OPENING_STEP: f64 = 2e-3;
+const MOST_OPENING: f64 = 0.6;
+
 /// A finger of a [`Hand`].
 #[derive(Debug, Clone)]
 pub struct Finger {
@@ -265,6 +269,38 @@ impl Hand {
             open[driven] -= opening * ratio;
         }
         self.model.clamp_to_limits(&mut open);
+        open
+    }
+
+    /// The joints of `start` with the fingers opened until each tip is `least` (metres) from where it is
+    /// at `closed`, as far as the limits allow. Fingers that are that far already stay as they are.
+    pub fn opened_by(&self, start: &[f64], closed: &[f64], least: f64) -> Vec<f64> {
+        let mut open = start.to_vec();
+        let tips = |joints: &[f64], group: &FingerGroup| -> Vec<Point3<f64>> {
+            let poses = self.model.root_from_links(joints).unwrap_or_default();
+            let links = group.fingers.iter().map(|&f| self.fingers[f].tip_links[0]);
+            let middle = |l: usize| Some(poses.get(l)? * self.shapes[l].centre);
+            links.filter_map(middle).collect()
+        };
+        for group in &self.groups {
+            let touching = tips(closed, group);
+            let apart = |joints: &[f64]| {
+                let moved = tips(joints, group);
+                let gaps = moved.iter().zip(&touching).map(|(a, b)| (a - b).norm());
+                gaps.fold(f64::INFINITY, f64::min)
+            };
+            // A unit of closing is a radian or a metre.
+            let mut opening = OPENING_STEP;
+            while apart(&open) < least && opening < MOST_OPENING {
+                let mut wider = open.clone();
+                for &(driven, ratio) in &group.closing {
+                    wider[driven] = start[driven] - opening * ratio;
+                }
+                self.model.clamp_to_limits(&mut wider);
+                open = wider;
+                opening += OPENING_STEP;
+            }
+        }
         open
     }
 

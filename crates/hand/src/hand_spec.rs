@@ -2,10 +2,14 @@
 //!
 //! It contains names; [`crate::Hand::new`] resolves them against the model.
 
+mod text;
+
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use thiserror::Error;
+
+pub use text::exempt_pairs_text;
 
 /// The largest TOML text accepted, in bytes.
 pub(crate) const MAX_SPEC_BYTES: usize = 1 << 20;

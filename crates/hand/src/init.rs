@@ -10,7 +10,6 @@ mod exempt;
 mod fingers;
 mod jaws;
 mod opposition;
-mod text;
 mod trial;
 
 use std::collections::BTreeMap;
@@ -27,7 +26,6 @@ use crate::synthesis::SynthesisError;
 use bodies::Bodies;
 use fingers::{Finger, Resting};
 use opposition::{Start, fixed_links};
-pub use text::exempt_pairs_text;
 
 /// A direction this near to an axis of the palm frame is taken for that axis, as a cosine (35°).
 const SNAP: f64 = 0.82;

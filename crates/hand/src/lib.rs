@@ -44,11 +44,15 @@ pub use alignment::carried_pose;
 pub use built_in::{LoadError, SDH_SPEC, SDH_URDF, schunk_sdh};
 pub use check::{Finding, Severity, check_hand, hand_meshes};
 pub use closing::{ClosedHand, ClosingRules, Rejection, close_hand};
-pub use collision::{CollisionObject, Gap, GeometryError, ObjectError, Precision};
+pub use collision::{
+    CollisionObject, Gap, GeometryError, ObjectError, PointTree, Precision, Surroundings,
+};
 pub use contact::{TipContact, link_contact, tip_contact};
 pub use hand::{Finger, FingerGroup, Hand, HandError, Jaws, Preshape};
-pub use hand_spec::{FingerSpec, HandSpec, PreshapeSpec, SelfDistance, SpecTextError};
-pub use init::{InitError, Proposal, exempt_pairs_text, propose};
+pub use hand_spec::{
+    FingerSpec, HandSpec, PreshapeSpec, SelfDistance, SpecTextError, exempt_pairs_text,
+};
+pub use init::{InitError, Proposal, propose};
 pub use kinematics::KinematicsError;
 pub use mesh_file::{MeshFileError, mesh_vertices};
 pub use model::{Drive, Geometry, HandModel, Joint, JointKind, Link, LinkGeometry};
@@ -59,7 +63,7 @@ pub use reach::{
 };
 pub use synthesis::{
     HandGrasp, Outcome, OutcomeCounts, Synthesis, SynthesisError, SynthesisParams, collect,
-    evaluate_pose, synthesize, synthesize_watched,
+    evaluate_pose, synthesize, synthesize_on, synthesize_watched,
 };
 pub use tip_model::TipModel;
 pub use urdf::{

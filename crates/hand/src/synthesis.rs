@@ -129,8 +129,9 @@ impl OutcomeCounts {
 
 impl Rejection {
     /// All reasons, in the order in which they are tested.
-    pub const REASONS: [&'static str; 8] = [
+    pub const REASONS: [&'static str; 10] = [
         "below_support",
+        "obstacle",
         "base_near_object",
         "starts_in_object",
         "part_near_object",
@@ -138,19 +139,22 @@ impl Rejection {
         "parts_near_each_other",
         "no_contact",
         "on_closed_hole",
+        "in_scan",
     ];
 
     /// The kind of reason, without link or finger.
     pub fn reason(&self) -> &'static str {
         match self {
             Rejection::BelowSupport { .. } => Self::REASONS[0],
-            Rejection::BaseNearObject { .. } => Self::REASONS[1],
-            Rejection::StartsInObject { .. } => Self::REASONS[2],
-            Rejection::PartNearObject { .. } => Self::REASONS[3],
-            Rejection::TipDidNotArrive { .. } => Self::REASONS[4],
-            Rejection::PartsNear { .. } => Self::REASONS[5],
-            Rejection::NoContact { .. } => Self::REASONS[6],
-            Rejection::OnClosedHole { .. } => Self::REASONS[7],
+            Rejection::Obstacle { .. } => Self::REASONS[1],
+            Rejection::BaseNearObject { .. } => Self::REASONS[2],
+            Rejection::StartsInObject { .. } => Self::REASONS[3],
+            Rejection::PartNearObject { .. } => Self::REASONS[4],
+            Rejection::TipDidNotArrive { .. } => Self::REASONS[5],
+            Rejection::PartsNear { .. } => Self::REASONS[6],
+            Rejection::NoContact { .. } => Self::REASONS[7],
+            Rejection::OnClosedHole { .. } => Self::REASONS[8],
+            Rejection::InScan { .. } => Self::REASONS[9],
         }
     }
 
@@ -161,6 +165,12 @@ impl Rejection {
         match self {
             Rejection::BelowSupport { link: l } => {
                 format!("'{}' is too near to the support plane or below it", link(l))
+            }
+            Rejection::Obstacle { link: l } => {
+                format!("'{}' is too near to another piece of the scene", link(l))
+            }
+            Rejection::InScan { link: l } => {
+                format!("'{}' is inside the scan", link(l))
             }
             Rejection::BaseNearObject { link: l } => {
                 format!("'{}' is too near to the object", link(l))
@@ -215,11 +225,25 @@ pub fn synthesize_watched<'a, R: Rng + ?Sized>(
     pose_done: &(dyn Fn() + Sync),
 ) -> Result<Synthesis, SynthesisError> {
     let object = CollisionObject::new(surface)?;
-    let poses = params.sampling.sample(&object, hand, params.poses, rng);
+    Ok(synthesize_on(&object, hand, params, rng, pose_done)?)
+}
+
+/// As [`synthesize_watched`], on an object that has been prepared, perhaps with its surroundings.
+///
+/// # Errors
+/// The convention cannot be used.
+pub fn synthesize_on<R: Rng + ?Sized>(
+    object: &CollisionObject<'_>,
+    hand: &Hand,
+    params: &SynthesisParams,
+    rng: &mut R,
+    pose_done: &(dyn Fn() + Sync),
+) -> Result<Synthesis, QualityError> {
+    let poses = params.sampling.sample(object, hand, params.poses, rng);
     let outcomes = poses
         .par_iter()
         .map(|pose| {
-            let outcome = evaluate_pose(&object, hand, pose, params);
+            let outcome = evaluate_pose(object, hand, pose, params);
             pose_done();
             outcome
         })

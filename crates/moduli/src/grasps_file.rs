@@ -133,6 +133,7 @@ fn hand_record(grasp: &Grasp, placement: &HandPlacement, hand: &Hand) -> HandRec
         pregrasp_joints: by_name(hand, &placement.pregrasp_joints),
         contact_error_m: placement.contact_error,
         execution: ExecutionRecord {
+            grasp_joints: by_name(hand, &placement.joints),
             approach_direction: Some((pose * hand.approach_axis()).into_inner().into()),
             clearance_to_support_m: placement.clearance_to_support,
             ..ExecutionRecord::default()

@@ -73,6 +73,7 @@ pub(crate) fn give_hands(
     }
     let object =
         CollisionObject::new(measure.object().shape()).map_err(hand::SynthesisError::from)?;
+    let object = object.with_surroundings(measure.object().surroundings().clone());
     let reacher = Reacher::new(&object, hand);
     let params = ReachParams {
         starts: search.starts,

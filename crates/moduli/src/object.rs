@@ -3,8 +3,9 @@
 mod reconstruction;
 
 use std::collections::BTreeMap;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
+use hand::{PointTree, Surroundings};
 use nalgebra::{Point3, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -46,6 +47,7 @@ pub struct Object {
     field: OnceLock<RadialField>,
     frame: CloudFrame,
     support: Option<Support>,
+    surroundings: Arc<Surroundings>,
     report: FitReport,
 }
 
@@ -117,6 +119,7 @@ impl Object {
             field: OnceLock::new(),
             frame: CloudFrame::new(fit.centre_in_cloud),
             support: None,
+            surroundings: Arc::default(),
             report: FitReport {
                 points,
                 rms: fit.rms,
@@ -150,10 +153,34 @@ impl Object {
     /// The object with the scene in which it was found; `notes` are sentences about what was left out.
     pub(crate) fn with_scene(mut self, mut scene: Scene, notes: Vec<String>) -> Self {
         scene.object = Vec::new();
+        scene.others = Vec::new();
         self.support = scene.support.map(|(plane, _)| plane);
         self.report.warnings.splice(0..0, notes);
         self.report.scene = Some(scene);
         self
+    }
+
+    /// The object among other pieces of its scene, with the points of its scan, both in the frame of the
+    /// cloud: hands stay away from the pieces, and links that hold points of the scan are refused.
+    #[must_use]
+    pub fn with_surroundings(self, obstacles: &[Point3<f64>], scan: &[Point3<f64>]) -> Self {
+        let centre = self.frame.to_cloud(&Point3::origin()).coords;
+        let centred =
+            |points: &[Point3<f64>]| PointTree::new(points.iter().map(|p| p - centre).collect());
+        let noise = self.report.acceptance.map_or(0.0, |a| a.noise_m);
+        Self {
+            surroundings: Arc::new(Surroundings {
+                obstacles: centred(obstacles),
+                cloud: centred(scan),
+                noise,
+            }),
+            ..self
+        }
+    }
+
+    /// What hands stay away from besides the surface, in the centred frame.
+    pub fn surroundings(&self) -> &Arc<Surroundings> {
+        &self.surroundings
     }
 
     /// The object standing on a plane, or on none.
@@ -169,6 +196,7 @@ impl Object {
             field: OnceLock::new(),
             frame: CloudFrame::new(Point3::origin()),
             support: None,
+            surroundings: Arc::default(),
             report: FitReport::default(),
         }
     }
@@ -185,6 +213,7 @@ impl Object {
             field: OnceLock::new(),
             frame: CloudFrame::new(record.centre_in_cloud()),
             support: stored_support(record.notes.support.as_ref())?,
+            surroundings: Arc::default(),
             report: FitReport {
                 points: usize::try_from(record.points).unwrap_or(usize::MAX),
                 rms: record.rms_m,

@@ -1,7 +1,8 @@
 //! Synthesis: grasps of a hand on an object, found by closing it from sampled poses (Sec. IV-C).
 
 use hand::{
-    ClosingRules, Hand, HandGrasp, PoseSampling, Synthesis, SynthesisError, SynthesisParams,
+    ClosingRules, CollisionObject, Hand, HandGrasp, PoseSampling, Synthesis, SynthesisError,
+    SynthesisParams,
 };
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -9,6 +10,9 @@ use rand_chacha::rand_core::SeedableRng;
 use crate::error::Error;
 use crate::grasp::{Grasp, Grasps, HandPlacement, Source};
 use crate::measure::Measure;
+
+/// How far each tip is from its contact before the fingers close, metres.
+const OPEN: f64 = 0.01;
 
 /// Which poses of a hand are sampled, and which closed poses are kept as grasps.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,7 +86,6 @@ impl Measure<'_> {
         poses: &Poses,
         pose_done: &(dyn Fn() + Sync),
     ) -> Result<Synthesis, SynthesisError> {
-        let surface = self.object().shape();
         let preshapes = if poses.preshapes.is_empty() {
             (0..hand.preshapes().len()).collect()
         } else {
@@ -112,7 +115,23 @@ impl Measure<'_> {
         };
         let mut generator = ChaCha8Rng::seed_from_u64(poses.seed);
         generator.set_stream(poses.stream);
-        hand::synthesize_watched(surface, hand, &params, &mut generator, pose_done)
+        let object = CollisionObject::new(self.object().shape())?;
+        let object = object.with_surroundings(self.object().surroundings().clone());
+        let found = hand::synthesize_on(&object, hand, &params, &mut generator, pose_done)?;
+        Ok(found)
+    }
+
+    /// The pre-shape from which the hand closed, opened until each tip is [`OPEN`] from where it touches;
+    /// the pre-shape itself where the joints or the support leave no room.
+    fn pregrasp(&self, hand: &Hand, found: &HandGrasp) -> Vec<f64> {
+        let start = &hand.preshapes()[found.preshape].joints;
+        let opened = hand.opened_by(start, &found.joints, OPEN);
+        let clearance = self.clearance(hand, &found.object_from_palm, &opened);
+        let least = ClosingRules::default().support_clearance;
+        if clearance.is_some_and(|height| height < least) {
+            return start.clone();
+        }
+        opened
     }
 
     fn of_hand_grasp(&self, hand: &Hand, found: &HandGrasp) -> Result<Grasp, Error> {
@@ -124,7 +143,7 @@ impl Measure<'_> {
         Ok(grasp.with_hand(Some(HandPlacement {
             centred_from_palm: found.object_from_palm,
             joints: found.joints.clone(),
-            pregrasp_joints: hand.preshapes()[found.preshape].joints.clone(),
+            pregrasp_joints: self.pregrasp(hand, found),
             contact_error: 0.0,
             met: true,
             clearance_to_support: self.clearance(hand, &found.object_from_palm, &found.joints),

@@ -23,7 +23,7 @@ pub use source::SourceRecord;
 
 /// The version of `grasps.json` that is written. Keys with a default may be added without a new
 /// version.
-pub const GRASPS_VERSION: u32 = 1;
+pub const GRASPS_VERSION: u32 = 2;
 
 /// The newest version that is read.
 const NEWEST_VERSION: u32 = 2;

@@ -81,7 +81,7 @@ fn joints(text: &mut String, key: &str, values: &BTreeMap<String, JointRecord>) 
 
 /// The shortest decimal number that reads back as the same value, with a decimal point and without
 /// an exponent, because readers of YAML 1.1 read `1e-7` as a string.
-fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     // Adding 0 turns −0 into 0.
     let digits = (value + 0.0).to_string();
     if digits.contains('.') {
@@ -92,6 +92,6 @@ fn number(value: f64) -> String {
 }
 
 /// A double-quoted scalar; a JSON string is also a YAML one.
-fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }

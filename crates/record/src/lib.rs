@@ -30,6 +30,7 @@ pub mod envelope;
 pub mod grasps;
 pub mod isaac;
 pub mod library;
+pub mod moveit;
 pub mod shape_record;
 pub mod spherical_record;
 
@@ -37,5 +38,6 @@ pub use envelope::{EnvelopeError, Kind};
 pub use grasps::{GraspRecord, GraspsFile, GraspsFileError};
 pub use isaac::{IsaacError, IsaacFile, IsaacGrasp, isaac_grasps};
 pub use library::{LibraryEntry, LibraryGrasp, LibraryObjectRecord, LibraryRecord};
+pub use moveit::moveit_grasps;
 pub use shape_record::{ShapeNotes, ShapeRecord};
 pub use spherical_record::SphericalRecord;

@@ -25,6 +25,7 @@
 pub mod digest;
 pub mod ledger;
 pub mod npy;
+pub mod npz;
 pub mod write;
 
 pub use digest::Digest;

@@ -136,6 +136,8 @@ pub struct Dropped {
 pub struct Scene {
     /// Indices into the cloud of the object's points, increasing; each distinct point once.
     pub object: Vec<usize>,
+    /// Indices into the cloud of the points of the other pieces, increasing; each distinct point once.
+    pub others: Vec<usize>,
     /// Where the object stands, and how this is known.
     pub support: Option<(Support, SupportSource)>,
     /// The pieces without the support, the largest first.
@@ -255,8 +257,14 @@ pub fn analyse(points: &[Point3<f64>], settings: &SceneSettings) -> Result<Scene
     }
     let mut object: Vec<usize> = groups[chosen].iter().map(|i| rows[*i].index).collect();
     object.sort_unstable();
+    let groups = groups.iter().enumerate().filter(|(k, _)| *k != chosen);
+    let mut others: Vec<usize> = groups
+        .flat_map(|(_, group)| group.iter().map(|i| rows[*i].index))
+        .collect();
+    others.sort_unstable();
     Ok(Scene {
         object,
+        others,
         support,
         pieces,
         dropped,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 
 use hand::TipModel;
 
@@ -171,4 +171,26 @@ pub(crate) struct GraspOptions {
     /// Number of grasps to keep of each kind, transferred and synthesized.
     #[arg(long, default_value_t = 12, value_parser = count_in::<1, 10_000>)]
     pub(crate) keep: usize,
+}
+
+/// A format of grasps for other programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ExportKind {
+    /// `isaac_grasp` YAML of Isaac Sim.
+    Isaac,
+    /// YAML in the fields of the message moveit_msgs/Grasp.
+    Moveit,
+    /// Arrays of NumPy in one archive.
+    Npz,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportOptions {
+    /// The format.
+    pub(crate) kind: ExportKind,
+    /// A grasps.json.
+    pub(crate) grasps: PathBuf,
+    /// File to write.
+    #[arg(short, long)]
+    pub(crate) output: PathBuf,
 }

@@ -57,7 +57,13 @@ pub(crate) fn run(options: &HandCheckOptions, common: &Common) -> Result<(), Fai
         .transpose()?;
     if let (Some(hand), Some(tried)) = (&hand, &tried) {
         let tips = options.contact.unwrap_or_else(|| hand.tip_model());
-        checked.findings.extend(no_grasp(hand, tried, tips, &files));
+        checked.findings.extend(all_fingers(hand, &files));
+        if tried.outcomes.stable == 0 {
+            let other = trial::other_ball(hand, tips, common.seed)?;
+            checked
+                .findings
+                .push(no_grasp(hand, tried, tips, other, &files));
+        }
     }
     let page = options.output.clone().unwrap_or_else(|| {
         PathBuf::from("out")
@@ -118,17 +124,42 @@ fn two_fingers(hand: &Hand, tips: TipModel, files: &HandOptions) -> Option<Findi
     })
 }
 
-/// A warning if the hand cannot grasp a ball.
-fn no_grasp(hand: &Hand, tried: &Trial, tips: TipModel, files: &HandOptions) -> Option<Finding> {
-    (tried.outcomes.stable == 0).then(|| Finding {
-        severity: "warning",
+/// A note for hands of many fingers all of which must touch.
+fn all_fingers(hand: &Hand, files: &HandOptions) -> Option<Finding> {
+    let fingers = hand.fingers().len();
+    (fingers > 3 && hand.least_fingers() == fingers).then(|| Finding {
+        severity: "note",
         place: spec_path(files).display().to_string(),
         text: format!(
-            "no pose gives a stable grasp of a ball of {:.0} mm: {}; try another --ball",
+            "a grasp needs all {fingers} fingers to touch; write least_fingers = 3 into the TOML to accept grasps in which some do not"
+        ),
+    })
+}
+
+/// An error if the hand grasps no ball at all, a warning if it grasps one of another diameter.
+fn no_grasp(
+    hand: &Hand,
+    tried: &Trial,
+    tips: TipModel,
+    other: Option<f64>,
+    files: &HandOptions,
+) -> Finding {
+    let (severity, advice) = match other {
+        Some(diameter) => (
+            "warning",
+            format!("a ball of {:.0} mm can be grasped", 1e3 * diameter),
+        ),
+        None => ("error", "no other ball can be grasped either".to_owned()),
+    };
+    Finding {
+        severity,
+        place: spec_path(files).display().to_string(),
+        text: format!(
+            "no pose gives a stable grasp of a ball of {:.0} mm: {}; {advice}",
             1e3 * tried.diameter,
             why_none(&tried.outcomes, hand, tips)
         ),
-    })
+    }
 }
 
 fn hand_line<'a>(hand: &'a Hand, tried: &Trial, page: String) -> HandLine<'a> {

@@ -10,6 +10,9 @@ use crate::failure::Failure;
 /// Poses tried.
 const POSES: usize = 200;
 
+/// Diameters of the balls that are tried where one gives no grasp, metres.
+const OTHER_BALLS: [f64; 6] = [0.055, 0.04, 0.025, 0.015, 0.09, 0.12];
+
 /// The outcomes of the poses.
 pub(crate) struct Trial {
     /// Diameter of the ball, metres.
@@ -33,6 +36,20 @@ pub(crate) fn on_ball(
             "--ball {diameter_mm}: expected a diameter from 1 to 2000 millimetres"
         )));
     }
+    try_ball(hand, diameter, tips, seed)
+}
+
+/// The diameter of a ball that the hand can grasp, metres.
+pub(crate) fn other_ball(hand: &Hand, tips: TipModel, seed: u64) -> Result<Option<f64>, Failure> {
+    for diameter in OTHER_BALLS {
+        if try_ball(hand, diameter, tips, seed)?.outcomes.stable > 0 {
+            return Ok(Some(diameter));
+        }
+    }
+    Ok(None)
+}
+
+fn try_ball(hand: &Hand, diameter: f64, tips: TipModel, seed: u64) -> Result<Trial, Failure> {
     let sphere = || RadialShape::sphere(3, 0.5 * diameter);
     let ball = sphere().map_err(|e| Failure::other(format!("the ball: {e}")))?;
     let object = Object::from_shape("a ball", ball.clone());

@@ -5,6 +5,7 @@ mod certificates;
 mod commands;
 mod common;
 mod evidence;
+mod export;
 mod formats;
 mod grippers;
 mod hand_init;

@@ -1,5 +1,7 @@
 //! The object as the hand meets it: distances from convex pieces to a surface.
 
+use std::sync::Arc;
+
 use nalgebra::{Isometry3, Point3};
 use shape::closed_patch::patch_at;
 use shape::{SurfaceRef, TriangleMesh};
@@ -9,6 +11,7 @@ use thiserror::Error;
 use super::gap::Gap;
 use super::piece::{ConvexPiece, LinkShape};
 use super::piece_frame::PieceFrame;
+use super::surroundings::Surroundings;
 use super::tree::{Content, Tree};
 
 /// Capacity of the stack of nodes; the depth of a balanced tree never exceeds it.
@@ -50,6 +53,7 @@ pub struct CollisionObject<'a> {
     pub(super) outer_radius: f64,
     inner_radius: f64,
     mesh_error: f64,
+    surroundings: Arc<Surroundings>,
 }
 
 /// How exactly a distance is wanted.
@@ -130,7 +134,22 @@ impl<'a> CollisionObject<'a> {
             outer_radius,
             inner_radius,
             mesh_error: facet_error(mesh, columns),
+            surroundings: Arc::default(),
         }
+    }
+
+    /// The same object among obstacles and with the points of its scan: hands stay away from both.
+    #[must_use]
+    pub fn with_surroundings(self, surroundings: Arc<Surroundings>) -> Self {
+        CollisionObject {
+            surroundings,
+            ..self
+        }
+    }
+
+    /// What is around the object and on it besides its surface.
+    pub fn surroundings(&self) -> &Surroundings {
+        &self.surroundings
     }
 
     /// The surface.

@@ -174,6 +174,16 @@ impl ConvexPiece {
         from_parry(self.shape().project_local_point(to_parry(p), true).point)
     }
 
+    /// How deep a point (piece frame) is below the surface of the piece; 0 outside.
+    pub(super) fn depth(&self, p: &Vector3<f64>) -> f64 {
+        let found = self.shape().project_local_point(to_parry(p), false);
+        if found.is_inside {
+            (from_parry(found.point) - p).norm()
+        } else {
+            0.0
+        }
+    }
+
     /// Vertices (piece frame) and triangles; round parts have 24 sides.
     fn triangles(&self) -> (Vec<Vector>, Vec<[u32; 3]>) {
         match &self.form {

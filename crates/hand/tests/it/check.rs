@@ -154,3 +154,43 @@ fn the_hand_of_the_guide_grasps_a_ball() {
     assert!(run.grasps.len() >= 10, "{:?}", run.outcomes.by_reason());
     assert_eq!(run.grasps[0].contacts.len(), hand.fingers().len());
 }
+
+#[test]
+fn near_pairs_are_printed_as_lines_of_the_spec() {
+    let near = spoilt("exempt_within_joints = 2", "exempt_within_joints = 1");
+    let note = near.last().unwrap();
+    assert_eq!(note.severity, Severity::Note);
+    let lines = note.text.split_once("exempt_pairs = [").unwrap().1;
+    let pairs: Vec<&str> = lines.lines().filter(|l| l.contains("\", \"")).collect();
+    assert!(!pairs.is_empty());
+    // Pasted, they leave nothing to complain of.
+    let pasted = format!("exempt_within_joints = 1\nexempt_pairs = [{lines}\n#");
+    let from = "exempt_within_joints = 2\nexempt_pairs = []";
+    assert_eq!(spoilt(from, &pasted), []);
+}
+
+#[test]
+fn idle_fingers_are_an_error_only_where_too_few_are_left() {
+    let idle = |least: &str| {
+        let spec = SDH_SPEC
+            .replace(
+                "closing = { sdh_thumb_2_joint = 1.0, sdh_thumb_3_joint = 0.75 }",
+                "closing = { sdh_thumb_2_joint = 1.0 }",
+            )
+            .replace(
+                "sdh_thumb_2_joint = -1.0471975511965976",
+                "sdh_thumb_2_joint = 1.570796",
+            );
+        let spec = HandSpec::from_toml(&format!("{least}\n{spec}")).unwrap();
+        let hand = Hand::new(load_urdf(SDH_URDF).unwrap(), &spec).unwrap();
+        let found = check_hand(&hand, 5e-3).unwrap();
+        let about = found.iter().find(|f| f.text.contains("cannot close"));
+        about.unwrap().clone()
+    };
+    let all = idle("");
+    assert_eq!(all.severity, Severity::Error);
+    assert!(all.text.contains("2 of the 3 fingers"), "{all}");
+    let two = idle("least_fingers = 2");
+    assert_eq!(two.severity, Severity::Warning);
+    assert!(two.text.contains("the others are enough"), "{two}");
+}

@@ -11,5 +11,7 @@ mod hostile_urdf;
 mod init;
 mod kinematics;
 mod reach;
+mod shipped_specs;
+mod surroundings;
 mod synthesis;
 mod urdf_files;

@@ -65,6 +65,7 @@ pub fn reconstruct(
     cloud: &PointCloud,
     settings: &ReconstructionSettings,
 ) -> Result<Reconstruction, Error> {
+    let whole = cloud;
     let (cloud, scene) = object_points(cloud, settings.scene.as_ref())?;
     let mut fit = shape::fit::fit(&cloud, &settings.fit)?;
     if let Some(sigma) = settings.heat {
@@ -73,6 +74,14 @@ pub fn reconstruct(
     let object = Object::from_fit(name, fit.clone(), cloud.points().len());
     let acceptance = accepted(&object, &fit, &cloud);
     let mut object = object.with_acceptance(acceptance);
+    let others = scene.iter().flat_map(|s| &s.others);
+    let obstacles: Vec<Point3<f64>> = others.map(|i| whole.points()[*i]).collect();
+    // Heat moves the surface away from the scan, and hands with it.
+    let scan = match settings.heat {
+        None => inliers(&fit, &cloud),
+        Some(_) => Vec::new(),
+    };
+    object = object.with_surroundings(&obstacles, &scan);
     if let Some(scene) = scene {
         let notes = scene_notes(&scene);
         object = object.with_scene(scene, notes);
@@ -112,16 +121,21 @@ pub fn object_points(
     Ok((object, scene))
 }
 
-/// How well the surface of a fit explains its cloud.
-pub(crate) fn accepted(object: &Object, fit: &Fit, cloud: &PointCloud) -> Acceptance {
+/// The points of a cloud without the outliers of its fit, unless these are many.
+fn inliers(fit: &Fit, cloud: &PointCloud) -> Vec<Point3<f64>> {
     let all = cloud.points();
     let mut used = vec![true; all.len()];
     if fit.outliers.len() as f64 <= MOST_OUTLIERS * all.len() as f64 {
         fit.outliers.iter().for_each(|i| used[*i] = false);
     }
     let used = all.iter().zip(&used).filter(|(_, used)| **used);
+    used.map(|(p, _)| *p).collect()
+}
+
+/// How well the surface of a fit explains its cloud.
+pub(crate) fn accepted(object: &Object, fit: &Fit, cloud: &PointCloud) -> Acceptance {
     let centre = fit.centre_in_cloud.coords;
-    let points: Vec<Point3<f64>> = used.map(|(p, _)| p - centre).collect();
+    let points: Vec<Point3<f64>> = inliers(fit, cloud).iter().map(|p| p - centre).collect();
     // A point at the centre has no direction; any start does for it.
     let direction = |p: &Point3<f64>| {
         Direction::try_new(p.coords, 0.0).unwrap_or_else(nalgebra::Vector3::z_axis)

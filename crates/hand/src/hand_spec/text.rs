@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::hand_spec::{FingerSpec, HandSpec, PreshapeSpec};
+use super::{FingerSpec, HandSpec, PreshapeSpec};
 
 impl HandSpec {
     /// The text of a TOML file from which [`HandSpec::from_toml`] reads the same spec.
