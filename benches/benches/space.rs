@@ -3,7 +3,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use grasp::Convention;
 use nalgebra::Point3;
-use shape::{RadialField, RadialShape};
+use shape::{RadialField, RadialShape, SphericalField, Surface};
 use space::{MonotoneAscent, Objective, PaperAscent};
 use sph::{Coefficients, SphericalCoords, index};
 
@@ -26,6 +26,17 @@ fn bench(criterion: &mut Criterion) {
     criterion.bench_function("moduli/ten steps of the paper's ascent L=50", |bencher| {
         bencher.iter(|| ascent.climb(&shape, &start, &mut objective, |_| {}))
     });
+    let map = SphericalField::from_radial(&shape);
+    let places = sph::direction::even_directions(1000);
+    criterion.bench_function(
+        "moduli/1000 reads of a map and its derivatives L=51",
+        |bencher| {
+            bencher.iter(|| {
+                let read = |p| map.differential(p).normal_slope.trace();
+                places.iter().map(read).sum::<f64>()
+            })
+        },
+    );
     let field = RadialField::new(shape);
     criterion.bench_function("moduli/ten steps of the paper's ascent, field", |bencher| {
         bencher.iter(|| ascent.climb(&field, &start, &mut objective, |_| {}))

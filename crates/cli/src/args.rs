@@ -18,7 +18,7 @@ pub(crate) use grasps::{
 };
 pub(crate) use hands::{
     ExportKind, ExportOptions, GraspOptions, HandCheckOptions, HandCommand, HandInitOptions,
-    HandOptions, SynthesizeOptions,
+    HandOptions, SurfaceChoice, SynthesizeOptions,
 };
 pub(crate) use library::{
     LibraryAddOptions, LibraryCommand, LibraryListOptions, LibraryRemoveOptions,

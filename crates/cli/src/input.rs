@@ -4,13 +4,12 @@ use std::path::Path;
 
 use grasp::{Convention, Edges};
 use moduli::{
-    Object, Reconstruction, ReconstructionSettings, SphericalObject, object_points, reconstruct,
-    scene_notes,
+    Object, Reconstruction, ReconstructionSettings, object_points, reconstruct, scene_notes,
 };
 use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use record::{EnvelopeError, GraspsFile, Kind, ShapeRecord, SphericalRecord, envelope};
+use record::{EnvelopeError, GraspsFile};
 use run::npy::Table;
 use shape::io::{Loaded, Warning};
 use shape::{FitError, FitSettings, PointCloud, SceneError};
@@ -96,8 +95,10 @@ pub(crate) fn fitted(
     scan: &Scan,
     name: &str,
     options: &CloudOptions,
+    model: moduli::Model,
 ) -> Result<Reconstruction, Failure> {
     let settings = ReconstructionSettings {
+        model,
         fit: FitSettings {
             degree: options.degree,
             lambda: options.lambda,
@@ -147,6 +148,9 @@ fn refused(name: &str, error: moduli::Error) -> Failure {
         moduli::Error::Unexplained { .. } => {
             "; cut away what is not the object; if a direction from the mean of the points meets the object more than once, `moduli fit --model spherical` fits it; --accept-misfit keeps this surface"
         }
+        moduli::Error::NeitherModel { .. } => {
+            "; cut away what is not the object, or scan it from more sides; --model with --accept-misfit keeps a surface that does not explain its points"
+        }
         moduli::Error::Fit(FitError::NotStarShaped { .. } | FitError::OpenContainer { .. }) => {
             "; `moduli fit --model spherical` fits such objects"
         }
@@ -174,43 +178,17 @@ pub(crate) fn directions(path: &Path) -> Result<Vec<Direction>, Failure> {
     Ok(directions)
 }
 
-/// An object of either kind of surface.
-pub(crate) enum Surfaced {
-    /// A radius per direction.
-    Radial(Box<Object>),
-    /// A map of the sphere into space.
-    Spherical(Box<SphericalObject>),
-}
-
 /// The object of a shape file of either kind; its surface is proved again.
-pub(crate) fn surfaced(path: &Path) -> Result<Surfaced, Failure> {
-    let bytes = read(path)?;
-    if envelope::kind_of(&bytes) != Some(Kind::Spherical) {
-        return Ok(Surfaced::Radial(Box::new(object(path)?)));
-    }
-    let record = SphericalRecord::from_bytes(&bytes).map_err(|e| Failure::input(path, e))?;
-    let object = SphericalObject::from_record(&record).map_err(|e| Failure::input(path, e))?;
-    Ok(Surfaced::Spherical(Box::new(object)))
-}
-
-/// A file with a radial shape.
-fn shape_record(path: &Path) -> Result<ShapeRecord, Failure> {
-    let bytes = read(path)?;
-    ShapeRecord::from_bytes(&bytes).map_err(|e| {
+pub(crate) fn object(path: &Path) -> Result<Object, Failure> {
+    Object::from_shape_file(&read(path)?).map_err(|e| {
         let hint = match e {
-            EnvelopeError::Magic => "; `moduli fit` makes shapes from clouds and meshes",
-            EnvelopeError::Kind { .. } if envelope::kind_of(&bytes) == Some(Kind::Spherical) => {
-                "; this command needs a radial shape, which `moduli fit --model radial` makes"
+            moduli::Error::Record(EnvelopeError::Magic) => {
+                "; `moduli fit` makes shapes from clouds and meshes"
             }
             _ => "",
         };
         Failure::input(path, format!("{e}{hint}"))
     })
-}
-
-/// The object of a shape file; its surface is proved again.
-pub(crate) fn object(path: &Path) -> Result<Object, Failure> {
-    Object::from_record(&shape_record(path)?).map_err(|e| Failure::input(path, e))
 }
 
 /// A grasps.json.

@@ -20,6 +20,7 @@ pub(crate) fn constraints(
             .iter()
             .map(|text| cap(text))
             .collect::<Result<_, _>>()?,
+        closed_holes: Vec::new(),
         closed_under: options
             .closed_at_friction
             .map(|friction| objective.with_friction(friction)),

@@ -1,17 +1,22 @@
 //! The page that `grasp` writes.
 
 use hand::{Hand, hand_meshes};
-use moduli::{Grasp, Measure};
+use moduli::{Embedding, Grasp, Measure, Object};
 use nalgebra::{Isometry3, Point3, Vector3};
 use record::GraspsFile;
-use record::grasps::{ConventionRecord, EdgesRecord, JointRecord, JointUnit, SourceRecord};
+use record::grasps::{
+    ConventionRecord, EdgesRecord, JointRecord, JointUnit, SourceRecord, SurfaceModel,
+};
 use report::{GraspPage, Mesh, PageGrasp, WeakestWrench, grasp_page};
-use shape::{PointCloud, Support, TriangleMesh};
+use shape::closed_patch::patch_at;
+use shape::{ClosedPatch, PointCloud, Support, TriangleMesh};
 
 use crate::failure::Failure;
 
 /// The paper's mesh: 10,000 vertices.
 const MESH: usize = 100;
+/// The same for a map of the sphere, whose points are not spread evenly.
+const MAP_MESH: usize = 160;
 /// Number of grasps that are drawn with their hand.
 const HANDS: usize = 12;
 
@@ -30,7 +35,12 @@ pub(crate) fn render(
     more: Vec<String>,
 ) -> Result<String, Failure> {
     let object = measure.object();
-    let mesh = object.shape().mesh(MESH, MESH);
+    let rows = match object.model() {
+        SurfaceModel::Radial => MESH,
+        SurfaceModel::Spherical => MAP_MESH,
+    };
+    let mesh = object.shape().mesh(rows, rows);
+    let (open, closed) = by_holes(&mesh, object.shape().closed_patches());
     let mut hands_left = HANDS;
     let grasps = ranked.iter().zip(&file.grasps).map(|(grasp, record)| {
         let placement = grasp.hand().filter(|_| hands_left > 0);
@@ -63,7 +73,7 @@ pub(crate) fn render(
         .collect();
     let mut drawn = Mesh {
         vertices: vertices.iter().map(|p| (*p).into()).collect(),
-        triangles: mesh.triangles,
+        triangles: open,
     };
     if let Some(support) = measure.support() {
         let in_cloud = object.frame().plane_to_cloud(&support);
@@ -77,6 +87,7 @@ pub(crate) fn render(
         title: object.name().to_owned(),
         subtitle_lines,
         mesh: drawn,
+        closed_holes: alone(&mesh, &closed, object),
         cloud: cloud.map_or_else(Vec::new, |cloud| {
             cloud.points().iter().map(|p| (*p).into()).collect()
         }),
@@ -105,6 +116,34 @@ fn ground(support: &Support, vertices: &[Point3<f64>]) -> Mesh {
             .map(|k| [0, 1 + k, 1 + (k + 1) % CORNERS])
             .collect(),
     }
+}
+
+/// The triangles of a surface that are not on parts that close holes, and those that are.
+fn by_holes(mesh: &TriangleMesh, patches: &[ClosedPatch]) -> (Vec<[u32; 3]>, Vec<[u32; 3]>) {
+    let on: Vec<bool> = mesh
+        .vertices
+        .iter()
+        .map(|v| patch_at(patches, v).is_some())
+        .collect();
+    let closes = |t: &[u32; 3]| t.iter().all(|v| on[*v as usize]);
+    let (closed, open) = mesh.triangles.iter().copied().partition(closes);
+    (open, closed)
+}
+
+/// Some triangles of a mesh with their own vertices, in the frame of the cloud.
+fn alone(mesh: &TriangleMesh, triangles: &[[u32; 3]], object: &Object) -> Mesh {
+    let mut names = vec![None; mesh.vertices.len()];
+    let mut out = Mesh::default();
+    for triangle in triangles {
+        out.triangles.push(triangle.map(|v| {
+            *names[v as usize].get_or_insert_with(|| {
+                let place = object.frame().to_cloud(&mesh.vertices[v as usize]);
+                out.vertices.push(place.into());
+                out.vertices.len() as u32 - 1
+            })
+        }));
+    }
+    out
 }
 
 /// Distance of a point from the nearest point of the cloud, metres.
@@ -159,7 +198,6 @@ pub(crate) fn source_label(source: &SourceRecord) -> String {
 fn facts(measure: &Measure, mesh: &TriangleMesh, convention: &ConventionRecord) -> Vec<String> {
     let size = 1e3 * extent(mesh);
     let object = measure.object();
-    let (low, high) = object.shape().radius_bounds();
     let torque = convention
         .torque_length_m
         .map_or(String::new(), |l| format!(", torques per {} mm", 1e3 * l));
@@ -177,16 +215,30 @@ fn facts(measure: &Measure, mesh: &TriangleMesh, convention: &ConventionRecord) 
             object.shape().degree(),
             1e3 * object.report().rms
         ),
-        format!(
-            "Proved: every point of the surface is between {:.1} and {:.1} mm from its centre.",
-            1e3 * low,
-            1e3 * high
-        ),
+        proved(object),
         format!(
             "Quality under convention {}: μ = {}, {edges}{torque}.",
             convention.name, convention.friction
         ),
     ]
+}
+
+/// What is proved of the surface.
+fn proved(object: &Object) -> String {
+    let (low, high) = object.radius_bounds();
+    match (object.model(), object.report().embedding) {
+        (SurfaceModel::Radial, _) => format!(
+            "Proved: every point of the surface is between {:.1} and {:.1} mm from its centre.",
+            1e3 * low,
+            1e3 * high
+        ),
+        (SurfaceModel::Spherical, Some(Embedding::Proved { .. })) => {
+            "A map of the sphere, proved to be smooth and not to touch itself.".to_owned()
+        }
+        (SurfaceModel::Spherical, _) => {
+            "A map of the sphere, proved to be an immersion.".to_owned()
+        }
+    }
 }
 
 /// Lengths of the edges of the mesh's box, metres.

@@ -73,7 +73,7 @@ pub fn build(settings: &LibrarySettings) -> Result<LibraryRecord, ExperimentErro
             settings.poses,
             settings.seed,
         )?;
-        entries.push(entry(fitted, &found, settings));
+        entries.extend(entry(fitted, &found, settings));
     }
     Ok(LibraryRecord {
         seed: settings.seed,
@@ -83,7 +83,7 @@ pub fn build(settings: &LibrarySettings) -> Result<LibraryRecord, ExperimentErro
     })
 }
 
-fn entry(fitted: &FittedScan, ranked: &Grasps, settings: &LibrarySettings) -> LibraryEntry {
+fn entry(fitted: &FittedScan, ranked: &Grasps, settings: &LibrarySettings) -> Option<LibraryEntry> {
     let name = &fitted.scan.name;
     fitted
         .object

@@ -3,7 +3,7 @@
 use moduli::{Convention, Grasp, Grasps, Hand, Object, Poses};
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use shape::{FitSettings, RadialField, RadialShape};
+use shape::{AnyField, FitSettings, RadialShape};
 use space::{Objective, Transfer, TransferEnd};
 use sph::Direction;
 
@@ -18,6 +18,8 @@ pub struct FittedScan {
     pub scan: ObjectCloud,
     /// The surface, and the position of the scan.
     pub object: Object,
+    /// The surface alone.
+    shape: RadialShape,
 }
 
 impl FittedScan {
@@ -33,11 +35,11 @@ impl FittedScan {
 
     /// The surface, in the centred frame.
     pub fn shape(&self) -> &RadialShape {
-        self.object.shape()
+        &self.shape
     }
 
     /// The surface prepared for ascents; the first call takes a few milliseconds.
-    pub fn field(&self) -> &RadialField {
+    pub fn field(&self) -> &AnyField {
         self.object.field()
     }
 
@@ -134,15 +136,21 @@ pub fn fit_all(objects: Objects, settings: &FitSettings) -> FittedSet {
     let fits: Vec<Result<FittedScan, Refused>> = objects
         .clouds
         .into_par_iter()
-        .map(
-            |scan| match Object::from_cloud(&scan.name, &scan.cloud, settings) {
-                Ok(object) => Ok(FittedScan { scan, object }),
-                Err(error) => Err(Refused {
-                    id: scan.id,
-                    reason: error.to_string(),
-                }),
-            },
-        )
+        .map(|scan| {
+            let object = Object::from_cloud(&scan.name, &scan.cloud, settings);
+            let refused = |reason| Refused {
+                id: scan.id.clone(),
+                reason,
+            };
+            let object = object.map_err(|error| refused(error.to_string()))?;
+            let shape = object.shape().radial().cloned();
+            let shape = shape.ok_or_else(|| refused("not a radial surface".to_owned()))?;
+            Ok(FittedScan {
+                scan,
+                object,
+                shape,
+            })
+        })
         .collect();
     let mut set = FittedSet {
         source: objects.source,

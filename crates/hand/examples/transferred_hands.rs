@@ -22,7 +22,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rayon::prelude::*;
 use record::LibraryRecord;
-use shape::{RadialField, RadialShape};
+use shape::{AnyField, RadialField, RadialShape};
 use space::Continuation;
 use space::point::contacts_on;
 use space::transfer::{Job, Transfer, TransferEnd, all_pairs};
@@ -52,7 +52,7 @@ struct Made {
 struct Study {
     hand: Hand,
     convention: Convention,
-    surfaces: Vec<RadialField>,
+    surfaces: Vec<AnyField>,
     grasps: Vec<Vec<HandGrasp>>,
 }
 
@@ -67,7 +67,7 @@ fn main() -> Result<(), Failure> {
     let objects = study
         .surfaces
         .iter()
-        .map(|s| CollisionObject::new(s.shape()))
+        .map(CollisionObject::new)
         .collect::<Result<Vec<_>, _>>()?;
     let reachers: Vec<Reacher> = objects
         .iter()
@@ -111,7 +111,7 @@ impl Study {
                 let mut rng = ChaCha8Rng::seed_from_u64(SEED);
                 let mut grasps = synthesize(&shape, &hand, &params, &mut rng)?.grasps;
                 grasps.truncate(BEST);
-                Ok((RadialField::new(shape), grasps))
+                Ok((RadialField::new(shape).into(), grasps))
             })
             .collect::<Result<Vec<_>, Failure>>()?;
         let (surfaces, grasps) = found.into_iter().unzip();

@@ -1,7 +1,6 @@
 //! Fits a surface to a scan, prints how well it fits, and stores it.
 #![allow(clippy::print_stdout, reason = "a program that prints its result")]
 
-use moduli::record::ShapeRecord;
 use moduli::{FitSettings, Object, PointCloud};
 
 pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -14,11 +13,11 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let object = Object::from_cloud("U1", &PointCloud::new(scan)?, &settings)?;
     let report = object.report();
     println!("{} points, rms {:.3} mm", report.points, 1e3 * report.rms);
-    let (low, high) = object.shape().radius_bounds();
+    let (low, high) = object.radius_bounds();
     println!("proved: {:.1} mm < r < {:.1} mm", 1e3 * low, 1e3 * high);
 
-    let bytes = object.to_record().to_bytes()?; // what `moduli fit -o` writes
-    let again = Object::from_record(&ShapeRecord::from_bytes(&bytes)?)?;
-    assert_eq!(again.shape().coefficients(), object.shape().coefficients());
+    let bytes = object.to_shape_file()?; // what `moduli fit -o` writes
+    let again = Object::from_shape_file(&bytes)?;
+    assert_eq!(again.to_record(), object.to_record());
     Ok(())
 }

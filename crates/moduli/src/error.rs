@@ -23,6 +23,14 @@ pub enum Error {
         /// What is to be said of the scene and of the surface, a sentence each.
         notes: Vec<String>,
     },
+    /// The cloud has neither a radial surface nor a map of the sphere.
+    #[error("{radial}; nor does a map of the sphere describe the points: {spherical}")]
+    NeitherModel {
+        /// Why no radius describes the points.
+        radial: Box<Error>,
+        /// Why no map does.
+        spherical: Box<Error>,
+    },
     /// The cloud has no proved surface.
     #[error(transparent)]
     Fit(#[from] shape::FitError),

@@ -39,7 +39,7 @@ impl<'a> HandContacts<'a> {
     pub fn new(object: &'a Object, hand: &'a Hand) -> Result<Self, Error> {
         Ok(Self {
             object,
-            collision: CollisionObject::new(object.shape()).map_err(hand::SynthesisError::from)?,
+            collision: CollisionObject::new(object.field()).map_err(hand::SynthesisError::from)?,
             hand,
         })
     }

@@ -72,7 +72,7 @@ pub(crate) fn give_hands(
         return Ok(());
     }
     let object =
-        CollisionObject::new(measure.object().shape()).map_err(hand::SynthesisError::from)?;
+        CollisionObject::new(measure.object().field()).map_err(hand::SynthesisError::from)?;
     let object = object.with_surroundings(measure.object().surroundings().clone());
     let reacher = Reacher::new(&object, hand);
     let params = ReachParams {

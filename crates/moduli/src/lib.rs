@@ -46,7 +46,6 @@ mod metrics;
 mod object;
 mod plan;
 pub mod records;
-mod spherical_object;
 mod synthesis;
 
 pub use crate::error::Error;
@@ -59,11 +58,10 @@ pub use crate::library_entry::{Kept, separation};
 pub use crate::measure::{Measure, uncertainty};
 pub use crate::metrics::Metrics;
 pub use crate::object::{
-    FitReport, Object, Reconstruction, ReconstructionSettings, object_points, reconstruct,
-    scene_notes,
+    FitReport, Fitted, Model, Object, Reconstruction, ReconstructionSettings, SurfacePoint,
+    object_points, reconstruct, scene_notes,
 };
 pub use crate::plan::{Plan, Planned, Progress, Stage, TransferCounts};
-pub use crate::spherical_object::{SphericalObject, SurfacePoint};
 pub use crate::synthesis::Poses;
 
 pub use ::grasp::{
@@ -74,8 +72,9 @@ pub use ::hand::{Hand, OutcomeCounts, TipModel};
 pub use ::record;
 pub use ::shape::io::Format;
 pub use ::shape::{
-    Acceptance, Evidence, Fit, FitSettings, PointCloud, RadialShape, Scene, SceneSettings,
-    SphericalSettings, SphericalShape, Support, SupportRule, SupportSource, Surface, Verdict,
+    Acceptance, AnyField, AnyShape, ClosedPatch, Embedding, Evidence, Fit, FitSettings, PointCloud,
+    RadialShape, Scene, SceneSettings, SphericalSettings, SphericalShape, Support, SupportRule,
+    SupportSource, Surface, Verdict,
 };
 pub use ::sph::Direction;
 pub use nalgebra;

@@ -5,10 +5,10 @@ use std::sync::OnceLock;
 use hand::{Hand, HandState, carried_pose};
 use rayon::prelude::*;
 use record::{LibraryEntry, LibraryGrasp, LibraryRecord};
-use shape::RadialField;
+use shape::{AnyShape, RadialShape};
 use space::point::contacts_on;
-use space::{Continuation, Transfer, TransferEnd};
-use sph::Direction;
+use space::{Continuation, Transfer, TransferEnd, distance_of};
+use sph::{Coefficients, Direction};
 
 use crate::carried::{CarriedGrasp, best};
 use crate::error::Error;
@@ -16,7 +16,7 @@ use crate::grasp::{Grasps, Source};
 use crate::hands::{HandSearch, give_hands};
 use crate::measure::Measure;
 use crate::object::Object;
-use crate::records::stored_coefficients;
+use crate::records::{StoredShapeError, stored_coefficients};
 
 /// Known objects with their best grasps.
 #[derive(Clone, Debug, Default)]
@@ -124,10 +124,12 @@ impl Library {
 
     /// The known objects nearest to an object by d (Sec. III-A), the nearest first.
     ///
+    /// For an object whose surface is a map f of the sphere, d is the L² distance of maps after the known
+    /// surface r p has been turned by the rotation of its parameters under which it is most like f.
+    ///
     /// # Errors
     /// An entry is damaged.
     pub fn nearest(&self, object: &Object, count: usize) -> Result<Vec<Neighbour>, Error> {
-        let beta = object.shape().coefficients();
         let damaged = |entry: &LibraryEntry, error| Error::LibraryShape {
             object: entry.id.clone(),
             error,
@@ -136,7 +138,8 @@ impl Library {
         for record in self.records()? {
             for entry in &record.entries {
                 let other = stored_coefficients(&entry.shape).map_err(|e| damaged(entry, e))?;
-                order.push((entry, &record.hand, beta.distance(&other)));
+                let distance = distance(object, &other).map_err(|e| damaged(entry, e))?;
+                order.push((entry, &record.hand, distance));
             }
         }
         order.sort_by(|a, b| a.2.total_cmp(&b.2));
@@ -217,10 +220,20 @@ pub(crate) fn carry(
         .collect()
 }
 
+/// d between an object and a known radius.
+fn distance(object: &Object, other: &Coefficients) -> Result<f64, StoredShapeError> {
+    match object.shape().radial() {
+        Some(shape) => Ok(shape.coefficients().distance(other)),
+        None => {
+            let known = AnyShape::from(RadialShape::new(other.clone())?);
+            Ok(distance_of(object.field(), &known.field()))
+        }
+    }
+}
+
 fn end(object: &Object) -> TransferEnd<'_> {
-    let surface: &RadialField = object.field();
     TransferEnd {
-        surface,
+        surface: object.field(),
         object_origin: object.frame().cloud_origin(),
     }
 }

@@ -31,21 +31,23 @@ impl Object {
     /// The library entry of this object: its surface, and the best of the ranked grasps that have a
     /// hand.
     ///
-    /// `id` is a short identifier; `name` is for display.
+    /// `id` is a short identifier; `name` is for display. `None` if the surface is a map of the sphere,
+    /// which a library does not hold.
     pub fn library_entry(
         &self,
         id: &str,
         name: &str,
         ranked: &Grasps,
         kept: &Kept,
-    ) -> LibraryEntry {
-        let spread = spread_out(ranked, self.shape().mean_radius(), kept);
-        LibraryEntry {
+    ) -> Option<LibraryEntry> {
+        let radius = self.shape().radial()?.mean_radius();
+        let spread = spread_out(ranked, radius, kept);
+        Some(LibraryEntry {
             id: id.to_owned(),
             name: name.to_owned(),
-            shape: self.to_record(),
+            shape: self.to_record()?,
             grasps: spread.into_iter().filter_map(library_grasp).collect(),
-        }
+        })
     }
 }
 

@@ -5,7 +5,7 @@ use hand::{Hand, TipModel};
 use nalgebra::Point3;
 use shape::{Evidence, PAD_RADIUS, PointCloud, Support};
 use space::point::contacts_on;
-use space::{MonotoneAscent, Objective, ResolvedConvention};
+use space::{Constraints, MonotoneAscent, Objective, ResolvedConvention};
 use sph::Direction;
 
 use crate::error::Error;
@@ -234,7 +234,7 @@ impl<'a> Measure<'a> {
     }
 
     /// Raises the quality of a grasp by moving its contacts over the surface; never lowers it. The
-    /// result has no hand.
+    /// result has no hand. No contact goes to where the surface closes a hole.
     ///
     /// # Errors
     /// A quality cannot be computed.
@@ -242,7 +242,12 @@ impl<'a> Measure<'a> {
         let mut objective = self.objective();
         let start = grasp.directions();
         let field = self.object.field();
-        let end = MonotoneAscent::default().climb(field, start, &mut objective, |_| {})?;
+        let limits = Constraints {
+            closed_holes: field.closed_patches().to_vec(),
+            ..Constraints::default()
+        };
+        let climber = MonotoneAscent::default();
+        let end = climber.climb_within(field, start, &mut objective, &limits, |_| {})?;
         self.grasp(&end.directions, grasp.source().clone())
     }
 }

@@ -1,6 +1,7 @@
 //! An object: its surface, where its cloud stood, and how well the surface fits.
 
 mod reconstruction;
+mod spherical;
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
@@ -10,11 +11,11 @@ use nalgebra::{Point3, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use record::grasps::{ObjectRecord, SurfaceModel};
-use record::{ShapeNotes, ShapeRecord};
+use record::{Kind, ShapeNotes, ShapeRecord, SphericalRecord};
 use shape::io::{Format, Loaded, read_cloud};
 use shape::{
-    Acceptance, Fit, FitSettings, PointCloud, RadialField, RadialShape, Scene, Support, Surface,
-    Verdict,
+    Acceptance, AnyField, AnyShape, Embedding, Fit, FitSettings, PointCloud, Scene, Support,
+    Surface, Verdict,
 };
 use sph::Direction;
 use sph::direction::direction_and_radius;
@@ -25,8 +26,9 @@ use crate::records::{scene_record, stored_shape, stored_support, support_record}
 
 use reconstruction::accepted;
 pub use reconstruction::{
-    Reconstruction, ReconstructionSettings, object_points, reconstruct, scene_notes,
+    Fitted, Model, Reconstruction, ReconstructionSettings, object_points, reconstruct, scene_notes,
 };
+pub use spherical::SurfacePoint;
 
 /// Share of the directions without a point above which the surface there is said to be a guess.
 const GUESSED: f64 = 0.02;
@@ -37,14 +39,14 @@ const DEGREE: usize = 50;
 
 /// An object with a surface whose validity is proved.
 ///
-/// The surface is the radial function r(p) > 0 over the directions p seen from the mean of the cloud
-/// (M^rad of the paper), in the *centred* frame. What a caller gives and gets is in the frame of the
-/// *cloud*.
+/// The surface is a radius r(p) > 0 over the directions p seen from the mean of the cloud (M^rad of the
+/// paper), or a map of the sphere into space, proved an immersion (M^sph), which need not be star-shaped.
+/// Both are in the *centred* frame. What a caller gives and gets is in the frame of the *cloud*.
 #[derive(Clone, Debug)]
 pub struct Object {
     name: String,
-    shape: RadialShape,
-    field: OnceLock<RadialField>,
+    shape: AnyShape,
+    field: OnceLock<AnyField>,
     frame: CloudFrame,
     support: Option<Support>,
     surroundings: Arc<Surroundings>,
@@ -58,8 +60,13 @@ pub struct FitReport {
     pub points: usize,
     /// Root mean square of the radial residuals, metres.
     pub rms: f64,
-    /// Weight λ of the penalty.
+    /// Weight λ of the penalty; of the coordinate x for a map of the sphere.
     pub lambda: f64,
+    /// Weights λ of x, y and z for a map of the sphere.
+    pub lambda_xyz: Option<[f64; 3]>,
+    /// Whether a map of the sphere is proved not to touch itself; `None` for a radial surface, which never
+    /// does, and for a surface that was read back or made.
+    pub embedding: Option<Embedding>,
     /// Largest residual, metres; `None` for a surface that was read back or made.
     pub max_abs: Option<f64>,
     /// How well the surface explains its points; `None` for a surface that was read back or made.
@@ -129,7 +136,7 @@ impl Object {
                 warnings: warnings(&fit),
                 ..FitReport::default()
             },
-            shape: fit.shape,
+            shape: fit.shape.into(),
         }
     }
 
@@ -189,10 +196,10 @@ impl Object {
     }
 
     /// A surface that was made and not fitted; its centred frame is that of the cloud.
-    pub fn from_shape(name: &str, shape: RadialShape) -> Self {
+    pub fn from_shape(name: &str, shape: impl Into<AnyShape>) -> Self {
         Self {
             name: name.to_owned(),
-            shape,
+            shape: shape.into(),
             field: OnceLock::new(),
             frame: CloudFrame::new(Point3::origin()),
             support: None,
@@ -201,7 +208,7 @@ impl Object {
         }
     }
 
-    /// A stored shape. Its surface is proved again, because a stored claim is not a proof.
+    /// A stored radial shape. Its surface is proved again, because a stored claim is not a proof.
     ///
     /// # Errors
     /// A number is not finite, or the radius is not proved positive.
@@ -209,7 +216,7 @@ impl Object {
         let shape = stored_shape(record)?;
         Ok(Self {
             name: record.name.clone(),
-            shape,
+            shape: shape.into(),
             field: OnceLock::new(),
             frame: CloudFrame::new(record.centre_in_cloud()),
             support: stored_support(record.notes.support.as_ref())?,
@@ -225,20 +232,48 @@ impl Object {
         })
     }
 
-    /// The record in which the object is stored.
-    pub fn to_record(&self) -> ShapeRecord {
-        ShapeRecord {
+    /// The record in which the object is stored; `None` if its surface is a map of the sphere, see
+    /// [`Object::to_spherical_record`].
+    pub fn to_record(&self) -> Option<ShapeRecord> {
+        Some(ShapeRecord {
             name: self.name.clone(),
-            coefficients: self.shape.coefficients().as_slice().to_vec(),
+            coefficients: self.shape.radial()?.coefficients().as_slice().to_vec(),
             centre_in_cloud_m: self.frame.centre_in_cloud().into(),
             lambda: self.report.lambda,
             rms_m: self.report.rms,
             points: self.report.points as u64,
-            notes: ShapeNotes {
-                support: self.support.as_ref().map(support_record),
-                residuals: self.report.residuals.clone(),
-                warnings: self.report.warnings.clone(),
-            },
+            notes: self.notes(),
+        })
+    }
+
+    fn notes(&self) -> ShapeNotes {
+        ShapeNotes {
+            support: self.support.as_ref().map(support_record),
+            residuals: self.report.residuals.clone(),
+            warnings: self.report.warnings.clone(),
+        }
+    }
+
+    /// The object of a shape file of either kind. Its surface is proved again.
+    ///
+    /// # Errors
+    /// The bytes are not a shape file, or its surface is not proved valid.
+    pub fn from_shape_file(bytes: &[u8]) -> Result<Self, Error> {
+        if record::envelope::kind_of(bytes) == Some(Kind::Spherical) {
+            return Self::from_spherical_record(&SphericalRecord::from_bytes(bytes)?);
+        }
+        Self::from_record(&ShapeRecord::from_bytes(bytes)?)
+    }
+
+    /// The bytes of the shape file of this object.
+    ///
+    /// # Errors
+    /// The record is larger than 256 MiB.
+    pub fn to_shape_file(&self) -> Result<Vec<u8>, Error> {
+        match (self.to_record(), self.to_spherical_record()) {
+            (Some(record), _) => Ok(record.to_bytes()?),
+            (None, Some(record)) => Ok(record.to_bytes()?),
+            (None, None) => Ok(Vec::new()),
         }
     }
 
@@ -263,15 +298,22 @@ impl Object {
     }
 
     /// The surface, in the centred frame.
-    pub fn shape(&self) -> &RadialShape {
+    pub fn shape(&self) -> &AnyShape {
         &self.shape
     }
 
-    /// The surface prepared for reading r, ∇r and ∇²r anywhere in a fraction of a microsecond.
+    /// How the surface is represented.
+    pub fn model(&self) -> SurfaceModel {
+        match self.shape {
+            AnyShape::Radial(_) => SurfaceModel::Radial,
+            AnyShape::Spherical(_) => SurfaceModel::Spherical,
+        }
+    }
+
+    /// The surface prepared for reading its points and derivatives anywhere in at most a microsecond.
     /// Prepared on the first call and kept.
-    pub fn field(&self) -> &RadialField {
-        self.field
-            .get_or_init(|| RadialField::new(self.shape.clone()))
+    pub fn field(&self) -> &AnyField {
+        self.field.get_or_init(|| self.shape.field())
     }
 
     /// How the surface came about.
@@ -295,11 +337,15 @@ impl Object {
     }
 
     /// The directions of points given in the frame of the cloud, and the largest distance of such a
-    /// point from the surface along its direction, metres.
+    /// point from the surface along its direction, metres. On a map of the sphere they are the places
+    /// nearest to the points.
     ///
     /// # Errors
-    /// A point is not finite, or lies at the centre.
+    /// A point is not finite, or lies at the centre of a radial surface.
     pub fn directions_of(&self, points: &[[f64; 3]]) -> Result<(Vec<Direction>, f64), Error> {
+        if let AnyField::Spherical(field) = self.field() {
+            return self.places_of(field, points);
+        }
         let mut farthest = 0.0_f64;
         let mut directions = Vec::with_capacity(points.len());
         for (contact, &position) in points.iter().enumerate() {
@@ -320,7 +366,7 @@ impl Object {
 
     /// What `grasps.json` says of the object.
     pub fn object_record(&self) -> ObjectRecord {
-        let (low, high) = self.shape.radius_bounds();
+        let (low, high) = self.radius_bounds();
         ObjectRecord {
             name: self.name.clone(),
             centre_m: self.frame.centre_in_cloud().into(),
@@ -328,7 +374,8 @@ impl Object {
             r_max_certified_m: high,
             centre_of_mass_m: self.frame.to_cloud(&self.shape.centre_of_mass()).into(),
             volume_m3: self.shape.mass_properties().volume,
-            model: Some(SurfaceModel::Radial),
+            closed_holes: self.hole_records(),
+            model: Some(self.model()),
             residuals: self.report.residuals.clone(),
             support: self.support.as_ref().map(support_record),
             scene: self.report.scene.as_ref().map(scene_record),

@@ -27,6 +27,9 @@ pub enum StoredShapeError {
     /// The map of a spherical shape is not proved an immersion.
     #[error(transparent)]
     Spherical(shape::SphericalError),
+    /// A closed hole is damaged.
+    #[error("a closed hole of the stored shape has a number that is not finite")]
+    Hole,
     /// The support plane is damaged.
     #[error("the support plane of the stored shape has no unit normal or no finite offset")]
     Support,

@@ -115,7 +115,7 @@ impl Measure<'_> {
         };
         let mut generator = ChaCha8Rng::seed_from_u64(poses.seed);
         generator.set_stream(poses.stream);
-        let object = CollisionObject::new(self.object().shape())?;
+        let object = CollisionObject::new(self.object().field())?;
         let object = object.with_surroundings(self.object().surroundings().clone());
         let found = hand::synthesize_on(&object, hand, &params, &mut generator, pose_done)?;
         Ok(found)

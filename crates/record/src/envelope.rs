@@ -35,11 +35,11 @@ impl Kind {
         }
     }
 
-    /// The version that is written. Shapes of version 1, which have no notes, are read too.
+    /// The version that is written. Shapes of version 1 of both kinds, which have no notes, are read too.
     fn version(self) -> u16 {
         match self {
-            Kind::Shape => 2,
-            Kind::Library | Kind::Spherical | Kind::LibraryObject => 1,
+            Kind::Shape | Kind::Spherical => 2,
+            Kind::Library | Kind::LibraryObject => 1,
         }
     }
 

@@ -76,7 +76,8 @@ pub struct ObjectRecord {
     pub name: String,
     /// Mean of the cloud: the origin of the centred frame.
     pub centre_m: [f64; 3],
-    /// Proved lower bound of the distance of the surface from the centre.
+    /// Proved lower bound of the distance of the surface from the centre; 0 for a surface that is not
+    /// radial, of which none is proved.
     pub r_min_certified_m: f64,
     /// Proved upper bound of the distance of the surface from the centre.
     pub r_max_certified_m: f64,
@@ -87,6 +88,9 @@ pub struct ObjectRecord {
     /// How the surface is represented; version 2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<SurfaceModel>,
+    /// Holes of the object that its surface closes; version 2.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub closed_holes: Vec<HoleRecord>,
     /// How well the surface fits its cloud, by name (`rms_m`, `surface_rms_m`, …); version 2.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub residuals: BTreeMap<String, f64>,
@@ -99,6 +103,15 @@ pub struct ObjectRecord {
     /// What the user should know about the object, one sentence each; version 2.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
+}
+
+/// A hole of an object that its surface closes, such as that of a handle. No contact is there.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HoleRecord {
+    /// Middle of the closing membrane, in the frame of the cloud.
+    pub centre_m: [f64; 3],
+    /// Area of one side, square metres.
+    pub area_m2: f64,
 }
 
 /// How a surface is represented.

@@ -40,4 +40,4 @@ pub use isaac::{IsaacError, IsaacFile, IsaacGrasp, isaac_grasps};
 pub use library::{LibraryEntry, LibraryGrasp, LibraryObjectRecord, LibraryRecord};
 pub use moveit::moveit_grasps;
 pub use shape_record::{ShapeNotes, ShapeRecord};
-pub use spherical_record::SphericalRecord;
+pub use spherical_record::{ClosedHoleRecord, SphericalRecord};

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::envelope::{self, EnvelopeError, Kind};
+use crate::shape_record::ShapeNotes;
 
 /// A map of the sphere into space, and the position of its cloud.
 ///
@@ -22,6 +23,24 @@ pub struct SphericalRecord {
     pub rms_m: f64,
     /// Number of points fitted.
     pub points: u64,
+    /// What else is known of the object. It follows the shape in a file of version 2.
+    #[serde(skip)]
+    pub notes: ShapeNotes,
+    /// Parts of the surface that close holes of the object. They follow the notes.
+    #[serde(skip)]
+    pub closed_holes: Vec<ClosedHoleRecord>,
+}
+
+/// A part of a surface that closes a hole of the object, such as that of a handle: no contact belongs
+/// there, and no finger passes through it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ClosedHoleRecord {
+    /// Points of the middle of the closing slab, in the frame of the cloud, metres.
+    pub places_m: Vec<[f64; 3]>,
+    /// Points of the surface within this distance of one of the places belong to the part, metres.
+    pub reach_m: f64,
+    /// Area of one side, m².
+    pub area_m2: f64,
 }
 
 impl SphericalRecord {
@@ -30,7 +49,7 @@ impl SphericalRecord {
     /// # Errors
     /// The record cannot be encoded, or is larger than 256 MiB.
     pub fn to_bytes(&self) -> Result<Vec<u8>, EnvelopeError> {
-        envelope::encode(Kind::Spherical, self)
+        envelope::encode(Kind::Spherical, &(self, &self.notes, &self.closed_holes))
     }
 
     /// Reads the bytes of a file of this shape.
@@ -41,6 +60,15 @@ impl SphericalRecord {
     /// # Errors
     /// The bytes are not a spherical shape of a version that is read, or are damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, EnvelopeError> {
-        envelope::decode(Kind::Spherical, bytes)
+        if envelope::version_of(bytes) == Some(1) {
+            return envelope::decode_version(Kind::Spherical, 1, bytes);
+        }
+        let (shape, notes, closed_holes): (Self, ShapeNotes, Vec<ClosedHoleRecord>) =
+            envelope::decode(Kind::Spherical, bytes)?;
+        Ok(Self {
+            notes,
+            closed_holes,
+            ..shape
+        })
     }
 }

@@ -69,6 +69,12 @@ fn view_html(page: &GraspPage) -> String {
             );
         }
     }
+    if !page.closed_holes.triangles.is_empty() {
+        out += &format!(
+            "{} Closed holes: nothing is there to touch. ",
+            dot(theme::CLOSED_HOLE)
+        );
+    }
     out +=
         "Drag to turn, scroll to zoom, arrow keys for the next grasp. Axes in millimetres.</p>\n";
     for (index, grasp) in page.grasps.iter().enumerate() {

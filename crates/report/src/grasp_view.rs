@@ -104,6 +104,12 @@ fn fixed_plot(page: &GraspPage, view: &View) -> Plot {
     let mut plot = Plot::new();
     let vertices = in_millimetres(&page.mesh.vertices);
     plot.add_trace(trace::mesh(&vertices, &page.mesh.triangles, theme::SURFACE).meta("surface"));
+    let closed = &page.closed_holes;
+    if !closed.triangles.is_empty() {
+        let vertices = in_millimetres(&closed.vertices);
+        let closed = trace::mesh(&vertices, &closed.triangles, theme::CLOSED_HOLE);
+        plot.add_trace(closed.meta("surface"));
+    }
     if !page.cloud.is_empty() {
         let stride = page.cloud.len().div_ceil(MAX_CLOUD_POINTS);
         let thinned: Vec<[f64; 3]> = page.cloud.iter().copied().step_by(stride).collect();

@@ -13,6 +13,9 @@ pub struct GraspPage {
     pub subtitle_lines: Vec<String>,
     /// The surface of the object.
     pub mesh: Mesh,
+    /// The parts of the surface that close holes of the object, in another colour; not part of `mesh`. May be
+    /// empty.
+    pub closed_holes: Mesh,
     /// The measured cloud (n × 3); at most 4,000 of its points are drawn. May be empty.
     pub cloud: Vec<[f64; 3]>,
     /// Coefficient of friction μ ≥ 0; the friction cones have half angle atan μ, and 0 draws none.
@@ -61,6 +64,9 @@ pub struct WeakestWrench {
 impl GraspPage {
     pub(crate) fn check(&self) -> Result<(), ReportError> {
         self.mesh.check("mesh")?;
+        if !self.closed_holes.triangles.is_empty() {
+            self.closed_holes.check("closed holes")?;
+        }
         check::finite_points("cloud", &self.cloud)?;
         if !(self.friction.is_finite() && self.friction >= 0.0) {
             return Err(ReportError::OutOfRange {

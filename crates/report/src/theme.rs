@@ -20,6 +20,8 @@ pub(crate) const RULE: &str = "#98a3af";
 pub(crate) const SURFACE: &str = "#c3d0db";
 /// Contacts and the arrows of their normals.
 pub(crate) const CONTACT: &str = "#b84500";
+/// Parts of a surface that close holes of the object.
+pub(crate) const CLOSED_HOLE: &str = "#cc79a7";
 /// Friction cones.
 pub(crate) const CONE: &str = "#e69f00";
 /// The hand.

@@ -11,6 +11,7 @@ use sph::Direction;
 use crate::surface::Surface;
 use crate::voxel_grid::{KeyMap, key};
 
+pub use distance::nearest_places;
 pub use local_noise::noise;
 
 /// A point is explained within this many standard deviations of the noise of the surface,

@@ -1,8 +1,11 @@
 //! A surface of either kind: a member of M^rad or of M^sph.
 
+use std::borrow::Cow;
+
 use nalgebra::{Point3, UnitVector3};
 use sph::Direction;
 
+use crate::algebra::SpaceError;
 use crate::closed_patch::ClosedPatch;
 use crate::mass::MassProperties;
 use crate::radial::RadialShape;
@@ -102,6 +105,34 @@ impl AnyShape {
 }
 
 impl AnyField {
+    /// γ(t) = (1−t) f₁ + t f₂: radii where both are radial, else coordinates of maps of the sphere.
+    ///
+    /// # Errors
+    /// Two radial shapes cannot be combined.
+    pub fn deformation(from: &Self, to: &Self, t: f64) -> Result<Self, SpaceError> {
+        if let (Self::Radial(from), Self::Radial(to)) = (from, to) {
+            return RadialField::deformation(from, to, t).map(Self::from);
+        }
+        let (from, to) = (from.spherical(), to.spherical());
+        Ok(SphericalField::deformation(&from, &to, t).into())
+    }
+
+    /// The surface as a map of the sphere; for a radial one f = r p.
+    pub fn spherical(&self) -> Cow<'_, SphericalField> {
+        match self {
+            Self::Radial(field) => Cow::Owned(SphericalField::from_radial(field.shape())),
+            Self::Spherical(field) => Cow::Borrowed(field),
+        }
+    }
+
+    /// The radial field, if it is one.
+    pub fn radial(&self) -> Option<&RadialField> {
+        match self {
+            Self::Radial(field) => Some(field),
+            Self::Spherical(_) => None,
+        }
+    }
+
     /// Where the surface closes a hole of the object, centred frame.
     pub fn closed_patches(&self) -> &[ClosedPatch] {
         match self {

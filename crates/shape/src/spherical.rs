@@ -73,18 +73,7 @@ impl SphericalShape {
 
     /// The same surface as a member of M^sph: f = r p, of one degree more.
     pub fn from_radial(shape: &RadialShape) -> Result<Self, SphericalError> {
-        let degree = shape.degree() + 1;
-        let grid = RingGrid::gauss_legendre(degree + 1, 2 * degree + 1);
-        let radii = grid.synthesis(shape.coefficients());
-        let directions = grid_directions(&grid);
-        let [x, y, z] = std::array::from_fn(|axis| {
-            let values = radii.values.iter().zip(&directions);
-            let values = GridValues {
-                longitudes: radii.longitudes,
-                values: values.map(|(r, p)| r * p[axis]).collect(),
-            };
-            grid.analysis(&values, degree)
-        });
+        let [x, y, z] = radial_coordinates(shape);
         Self::new(x, y, z)
     }
 
@@ -132,6 +121,22 @@ impl SphericalShape {
         let coordinates = self.coordinates.each_ref();
         coordinates.map(|c| self.basis.jet(c, p, &mut work))
     }
+}
+
+/// The coordinates of f = r p, of one degree more than r.
+pub(crate) fn radial_coordinates(shape: &RadialShape) -> [Coefficients; 3] {
+    let degree = shape.degree() + 1;
+    let grid = RingGrid::gauss_legendre(degree + 1, 2 * degree + 1);
+    let radii = grid.synthesis(shape.coefficients());
+    let directions = grid_directions(&grid);
+    std::array::from_fn(|axis| {
+        let values = radii.values.iter().zip(&directions);
+        let values = GridValues {
+            longitudes: radii.longitudes,
+            values: values.map(|(r, p)| r * p[axis]).collect(),
+        };
+        grid.analysis(&values, degree)
+    })
 }
 
 /// The regular (θ,φ) mesh of a map.

@@ -2,11 +2,15 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Point3, UnitVector3};
+use nalgebra::{Point3, Rotation3, UnitVector3};
+use sph::rotation::rotate;
 use sph::{Coefficients, Direction, Field, Jet};
 
 use crate::closed_patch::ClosedPatch;
-use crate::spherical::{SphericalShape, contact_of, differential_of, mesh_of};
+use crate::crossing::crossing;
+use crate::mass;
+use crate::radial::RadialShape;
+use crate::spherical::{SphericalShape, contact_of, differential_of, mesh_of, radial_coordinates};
 use crate::surface::{Differential, Surface};
 use crate::triangle_mesh::TriangleMesh;
 
@@ -31,6 +35,69 @@ impl SphericalField {
             centroid: shape.centre_of_mass(),
             closed: shape.shared_closed_patches(),
         }
+    }
+
+    /// A radial surface as a map of the sphere: f = r p, of one degree more.
+    pub fn from_radial(shape: &RadialShape) -> Self {
+        let coordinates = radial_coordinates(shape);
+        Self {
+            fields: coordinates.each_ref().map(Field::new),
+            coordinates,
+            centroid: shape.centre_of_mass(),
+            closed: Arc::default(),
+        }
+    }
+
+    /// The same surface with its parameters turned: p ↦ f(R p).
+    #[must_use]
+    pub fn turned(&self, rotation: &Rotation3<f64>) -> Self {
+        let back = rotation.inverse();
+        let coordinates = self.coordinates.each_ref().map(|c| rotate(c, &back));
+        Self {
+            fields: coordinates.each_ref().map(Field::new),
+            coordinates,
+            ..self.clone()
+        }
+    }
+
+    /// d(f₁,f₂) = (∫_{S²} |f₁−f₂|²)^{1/2}: the L² distance of the maps, metres.
+    pub fn distance(&self, other: &Self) -> f64 {
+        let pairs = self.coordinates.iter().zip(&other.coordinates);
+        let squares = pairs.map(|(a, b)| a.distance(b).powi(2));
+        squares.sum::<f64>().sqrt()
+    }
+
+    /// γ(t) = (1−t) f₁ + t f₂, coordinate by coordinate. It closes no hole.
+    ///
+    /// M^sph is not convex: whether γ(t) is an immersion is another question, see
+    /// [`SphericalField::crossing`].
+    #[must_use]
+    pub fn deformation(from: &Self, to: &Self, t: f64) -> Self {
+        let pair = |axis: usize| {
+            let terms = [
+                (1.0 - t, &from.coordinates[axis]),
+                (t, &to.coordinates[axis]),
+            ];
+            Coefficients::combination(terms)
+        };
+        let coordinates = [pair(0), pair(1), pair(2)];
+        let fields = [0, 1, 2].map(|axis: usize| {
+            let terms = [(1.0 - t, &from.fields[axis]), (t, &to.fields[axis])];
+            // Fields of different degrees share no grid.
+            Field::combine(&terms).unwrap_or_else(|_| Field::new(&coordinates[axis]))
+        });
+        Self {
+            fields,
+            centroid: mass::spherical(&coordinates).centroid,
+            coordinates,
+            closed: Arc::default(),
+        }
+    }
+
+    /// A place, centred frame, where a fine mesh of the surface cuts itself or its area element nearly
+    /// vanishes; none is no proof that the surface is embedded. Some tens of milliseconds at L = 50.
+    pub fn crossing(&self) -> Option<Point3<f64>> {
+        crossing(&self.coordinates)
     }
 
     /// The coefficients β of x, y and z, all of one degree.

@@ -2,7 +2,7 @@
 
 use grasp::QualityError;
 use nalgebra::Vector3;
-use shape::Surface;
+use shape::{ClosedPatch, Surface};
 use sph::Direction;
 use sph::direction::{log, retract};
 
@@ -28,6 +28,8 @@ pub struct Constraints {
     pub largest_separation: Option<f64>,
     /// The allowed part of the surface: the direction of every contact lies in all of these caps.
     pub caps: Vec<Cap>,
+    /// Parts of the surface that close holes of the object: no contact lies on them.
+    pub closed_holes: Vec<ClosedPatch>,
     /// An objective under which the grasp must be force-closed too. [`Objective::with_friction`]
     /// with a smaller μ makes this a margin of the friction cones.
     pub closed_under: Option<Objective>,
@@ -89,6 +91,7 @@ impl Constraints {
         self.least_separation.is_none()
             && self.largest_separation.is_none()
             && self.caps.is_empty()
+            && self.closed_holes.is_empty()
             && self.closed_under.is_none()
     }
 
@@ -227,13 +230,13 @@ impl Constraints {
         }
     }
 
-    /// Number of separations and caps for this many contacts: first every cap of every contact,
-    /// then every pair.
+    /// Number of separations, caps and holes for this many contacts: first every cap of every contact,
+    /// then every hole of every contact, then every pair.
     fn count(&self, contacts: usize) -> usize {
         let of_a_pair = usize::from(self.least_separation.is_some())
             + usize::from(self.largest_separation.is_some());
         let pairs = contacts * contacts.saturating_sub(1) / 2;
-        self.caps.len() * contacts + of_a_pair * pairs
+        (self.caps.len() + self.closed_holes.len()) * contacts + of_a_pair * pairs
     }
 
     /// Constraint k of these contacts.
@@ -242,13 +245,19 @@ impl Constraints {
         if k < of_caps {
             return self.caps[k / directions.len()].limit(directions, k % directions.len());
         }
+        let (k, holes) = (k - of_caps, self.closed_holes.len() * directions.len());
+        if k < holes {
+            let hole = &self.closed_holes[k / directions.len()];
+            return of_hole(surface, directions, hole, k % directions.len());
+        }
+        let k = k - holes;
         match (self.least_separation, self.largest_separation) {
             (Some(least), Some(largest)) => {
-                let (pair, bound) = ((k - of_caps) / 2, (k - of_caps) % 2);
+                let (pair, bound) = (k / 2, k % 2);
                 let far = (bound == 1).then_some(largest);
                 of_pair(surface, directions, pair, least, far)
             }
-            (least, far) => of_pair(surface, directions, k - of_caps, least.unwrap_or(0.0), far),
+            (least, far) => of_pair(surface, directions, k, least.unwrap_or(0.0), far),
         }
     }
 }
@@ -261,6 +270,28 @@ impl Cap {
             scale: 1.0,
             by_move: [(i, self.axis.into_inner()), (i, Vector3::zeros())],
         }
+    }
+}
+
+/// A contact keeps off a part of the surface that closes a hole.
+fn of_hole(
+    surface: &impl Surface,
+    directions: &[Direction],
+    hole: &ClosedPatch,
+    i: usize,
+) -> Limit {
+    let at = surface.differential(&directions[i]);
+    let nearest = hole.nearest(&at.position);
+    let (away, distance) = nearest.map_or((Vector3::zeros(), f64::INFINITY), |(place, d)| {
+        (at.position - place, d - hole.reach)
+    });
+    let along = away.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+    let slope = at.position_slope.transpose() * along;
+    Limit {
+        name: "the distance from a closed hole",
+        slack: distance,
+        scale: hole.reach.max(1e-3),
+        by_move: [(i, slope), (i, Vector3::zeros())],
     }
 }
 

@@ -1,4 +1,5 @@
-//! The grasp moduli space M^rad × (S²)^m: points, metrics, curves, ascent and transfer.
+//! The grasp moduli space M × (S²)^m, M being M^rad or M^sph: points, metrics, curves, ascent and
+//! transfer.
 //!
 //! Implements Sec. III-C, IV-B, IV-D and IV-E of the paper. Surfaces and contacts are in the
 //! centred frame of `shape`.
@@ -50,5 +51,6 @@ pub use point::ModuliPoint;
 pub use quality::{ByDifferences, LinearPieces, Quality};
 pub use resolved::ResolvedConvention;
 pub use transfer::{
-    Continuation, PaperTransfer, Recovery, Transfer, TransferEnd, TransferError, Transferred,
+    Continuation, Correspondence, PaperTransfer, Recovery, Transfer, TransferEnd, TransferError,
+    Transferred, distance_of,
 };

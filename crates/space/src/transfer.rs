@@ -1,9 +1,11 @@
 //! Transfer of grasps from one shape to another (Sec. IV-E).
 
 mod continuation;
+mod correspondence;
 mod jobs;
 
 pub use continuation::{Continuation, Recovery, Splitting};
+pub use correspondence::{Correspondence, distance_of};
 pub use jobs::{Job, Progress, all_pairs, run_jobs};
 
 use std::collections::BTreeMap;
@@ -11,8 +13,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use grasp::{Convention, QualityError};
 use nalgebra::Point3;
-use shape::RadialField;
 use shape::algebra::SpaceError;
+use shape::{AnyField, Surface};
 use sph::Direction;
 
 use crate::ascent::{Ascent, PaperAscent, Step};
@@ -84,7 +86,7 @@ impl std::fmt::Display for StillOpen {
 #[derive(Clone, Copy, Debug)]
 pub struct TransferEnd<'a> {
     /// The surface, in its centred frame.
-    pub surface: &'a RadialField,
+    pub surface: &'a AnyField,
     /// The origin of this object's own cloud frame in its centred frame, metres. It matters only
     /// for conventions that take torques about it.
     pub object_origin: Point3<f64>,
@@ -95,11 +97,11 @@ pub struct TransferEnd<'a> {
 /// ```
 /// use grasp::Convention;
 /// use nalgebra::Point3;
-/// use shape::{RadialField, RadialShape};
+/// use shape::{AnyShape, RadialShape};
 /// use space::{Transfer, TransferEnd};
 ///
-/// let [small, large] = [0.03, 0.05].map(|r| RadialShape::sphere(4, r).map(RadialField::new));
-/// let (small, large) = (small?, large?);
+/// let ball = |r| RadialShape::sphere(4, r).map(|ball| AnyShape::from(ball).field());
+/// let (small, large) = (ball(0.03)?, ball(0.05)?);
 /// let end = |surface| TransferEnd { surface, object_origin: Point3::origin() };
 /// let rule = Convention::paper();
 /// let pair = Transfer::new(end(&small), end(&large), &rule);
@@ -110,18 +112,49 @@ pub struct TransferEnd<'a> {
 /// The convention is a rule. It is resolved on every shape γ(t), with the origin (1−t) o₁ + t o₂,
 /// so that the source's qualities refer to the source and the target's to the target. The shapes
 /// γ(k/n) are computed once per pair and n, when a scheme first requests them.
+///
+/// Two radial surfaces correspond by their directions. Where one of the two is a map of the sphere
+/// both are taken for maps, f₁ and f₂, and f₂ is first turned by the rotation R of its parameters under
+/// which it is most like f₁ ([`Correspondence`]); then γ(t)(p) = (1−t) f₁(p) + t f₂(R p).
 #[derive(Debug)]
 pub struct Transfer<'a> {
     from: TransferEnd<'a>,
     to: TransferEnd<'a>,
     convention: &'a Convention,
-    stations: Mutex<BTreeMap<usize, Arc<[RadialField]>>>,
+    matched: Option<Matched>,
+    stations: Mutex<BTreeMap<usize, Arc<[AnyField]>>>,
+}
+
+/// Both surfaces as maps of the sphere, the second with its parameters turned.
+#[derive(Debug)]
+struct Matched {
+    correspondence: Correspondence,
+    from: AnyField,
+    to: AnyField,
+}
+
+impl Matched {
+    /// None for two radial surfaces.
+    fn new(from: &AnyField, to: &AnyField) -> Option<Self> {
+        if let (AnyField::Radial(_), AnyField::Radial(_)) = (from, to) {
+            return None;
+        }
+        let (from, to) = (from.spherical(), to.spherical());
+        let correspondence = Correspondence::find(&from, &to);
+        Some(Self {
+            to: to.turned(&correspondence.rotation).into(),
+            from: from.into_owned().into(),
+            correspondence,
+        })
+    }
 }
 
 impl<'a> Transfer<'a> {
-    /// A pair; no shape is computed yet.
+    /// A pair; no shape is computed yet. Where one of the surfaces is a map of the sphere this looks for
+    /// the correspondence, some tenths of a second.
     pub fn new(from: TransferEnd<'a>, to: TransferEnd<'a>, convention: &'a Convention) -> Self {
         Self {
+            matched: Matched::new(from.surface, to.surface),
             from,
             to,
             convention,
@@ -130,13 +163,66 @@ impl<'a> Transfer<'a> {
     }
 
     /// The object that the grasps come from.
-    pub fn source(&self) -> &'a RadialField {
+    pub fn source(&self) -> &'a AnyField {
         self.from.surface
     }
 
     /// The object that grasps are transferred to.
-    pub fn target(&self) -> &'a RadialField {
+    pub fn target(&self) -> &'a AnyField {
         self.to.surface
+    }
+
+    /// The correspondence of the two surfaces; `None` for two radial ones, which correspond by their
+    /// directions.
+    pub fn correspondence(&self) -> Option<&Correspondence> {
+        self.matched.as_ref().map(|m| &m.correspondence)
+    }
+
+    /// The stations γ(k/n), 0 < k < n, that cut or fold themselves, as a fine mesh of each shows it: t, and
+    /// a place in the centred frame. The shapes between two radial ones never do; M^sph is not convex.
+    ///
+    /// # Errors
+    /// The shapes cannot be combined.
+    pub fn crossing_stations(
+        &self,
+        intervals: usize,
+    ) -> Result<Vec<(f64, Point3<f64>)>, TransferError> {
+        let stations = self.stations(intervals)?;
+        let between = 1..stations.len().saturating_sub(1);
+        let crossing = |k: usize| match &stations[k] {
+            AnyField::Radial(_) => None,
+            AnyField::Spherical(field) => {
+                let place = field.crossing()?;
+                Some((parameter(k, stations.len()), place))
+            }
+        };
+        Ok(between.filter_map(crossing).collect())
+    }
+
+    /// Where contacts in these directions of γ(t) would be on the source and on the target; γ(t) has them
+    /// at (1−t) of the first and t of the second.
+    pub fn ends_of(&self, p: &Direction) -> [Point3<f64>; 2] {
+        let (from, to) = self.ends();
+        [from.point(p), to.point(p)]
+    }
+
+    /// The directions on the target of contacts that have these on γ(1).
+    fn on_target(&self, directions: &[Direction]) -> Vec<Direction> {
+        match &self.matched {
+            None => directions.to_vec(),
+            Some(matched) => {
+                let turn = matched.correspondence.rotation;
+                directions.iter().map(|p| turn * p).collect()
+            }
+        }
+    }
+
+    /// γ(0) and γ(1).
+    fn ends(&self) -> (&AnyField, &AnyField) {
+        match &self.matched {
+            None => (self.from.surface, self.to.surface),
+            Some(matched) => (&matched.from, &matched.to),
+        }
     }
 
     /// The shapes γ(k/n) = (1−k/n) r₁ + (k/n) r₂ for k = 0 … n, prepared for ascents; n is at least
@@ -144,13 +230,13 @@ impl<'a> Transfer<'a> {
     ///
     /// # Errors
     /// The shapes cannot be combined.
-    pub fn stations(&self, intervals: usize) -> Result<Arc<[RadialField]>, TransferError> {
+    pub fn stations(&self, intervals: usize) -> Result<Arc<[AnyField]>, TransferError> {
         let n = intervals.max(1);
         let mut kept = self.stations.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(stations) = kept.get(&n) {
             return Ok(Arc::clone(stations));
         }
-        let stations: Arc<[RadialField]> = (0..=n)
+        let stations: Arc<[AnyField]> = (0..=n)
             .map(|k| self.station(k as f64 / n as f64))
             .collect::<Result<_, _>>()?;
         kept.insert(n, Arc::clone(&stations));
@@ -158,8 +244,13 @@ impl<'a> Transfer<'a> {
     }
 
     /// The shape γ(t), computed at every call.
-    fn station(&self, t: f64) -> Result<RadialField, TransferError> {
-        RadialField::deformation(self.from.surface, self.to.surface, t).map_err(TransferError::from)
+    fn station(&self, t: f64) -> Result<AnyField, TransferError> {
+        let (from, to) = self.ends();
+        if t >= 1.0 {
+            // The target itself, with what is known of its holes.
+            return Ok(to.clone());
+        }
+        AnyField::deformation(from, to, t).map_err(TransferError::from)
     }
 
     /// The origin of the user's frame on γ(t).
@@ -169,20 +260,21 @@ impl<'a> Transfer<'a> {
     }
 
     /// The objective that measures Q on the shape γ(t).
-    fn objective(&self, t: f64, on: &RadialField) -> Objective {
+    fn objective(&self, t: f64, on: &AnyField) -> Objective {
         Objective::new(self.convention, on, &self.origin(t))
     }
 
-    /// The naive transfer: the contacts keep their θ and φ.
+    /// The naive transfer: the contacts keep their θ and φ, where one of the surfaces is a map of the
+    /// sphere after the correspondence.
     ///
     /// # Errors
     /// A quality cannot be computed.
     pub fn naive(&self, directions: &[Direction]) -> Result<Transferred, TransferError> {
-        let (from, to) = (self.from.surface, self.to.surface);
+        let (from, to) = self.ends();
         let start_quality = self.objective(0.0, from).quality_at(from, directions)?;
         let quality = self.objective(1.0, to).quality_at(to, directions)?;
         Ok(Transferred {
-            directions: directions.to_vec(),
+            directions: self.on_target(directions),
             start_quality,
             quality,
             evaluations: 2,
@@ -253,14 +345,9 @@ impl PaperTransfer {
 /// Climbs on every station in turn, each time from the end of the ascent before.
 fn carry_over(
     transfer: &Transfer,
-    stations: &[RadialField],
+    stations: &[AnyField],
     directions: &[Direction],
-    mut climb: impl FnMut(
-        f64,
-        &RadialField,
-        &[Direction],
-        &mut Objective,
-    ) -> Result<Ascent, QualityError>,
+    mut climb: impl FnMut(f64, &AnyField, &[Direction], &mut Objective) -> Result<Ascent, QualityError>,
 ) -> Result<Transferred, TransferError> {
     let mut arrived = Transferred {
         directions: directions.to_vec(),
@@ -290,6 +377,7 @@ fn carry_over(
         lost_at,
         climbs: 1,
     });
+    arrived.directions = transfer.on_target(&arrived.directions);
     Ok(arrived)
 }
 

@@ -133,6 +133,27 @@ pub(crate) struct HandCheckOptions {
     pub(crate) ball: f64,
 }
 
+/// The kind of surface that grasps are found on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SurfaceChoice {
+    /// Radial where a radius explains the cloud, spherical otherwise.
+    Auto,
+    /// A radius per direction from the mean of the cloud; the object must be star-shaped.
+    Radial,
+    /// A map of the sphere into space, for any closed object; handles are closed and reported.
+    Spherical,
+}
+
+impl From<SurfaceChoice> for moduli::Model {
+    fn from(choice: SurfaceChoice) -> Self {
+        match choice {
+            SurfaceChoice::Auto => Self::Auto,
+            SurfaceChoice::Radial => Self::Radial,
+            SurfaceChoice::Spherical => Self::Spherical,
+        }
+    }
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct GraspOptions {
     /// Clouds or meshes; by default a built-in object that is not in the library.
@@ -145,6 +166,9 @@ pub(crate) struct GraspOptions {
     /// addition to the built-in ones.
     #[arg(long, value_name = "DIR")]
     pub(crate) library: Option<PathBuf>,
+    /// Kind of surface.
+    #[arg(long, value_enum, default_value_t = SurfaceChoice::Auto)]
+    pub(crate) model: SurfaceChoice,
     #[command(flatten)]
     pub(crate) fit: CloudOptions,
     #[command(flatten)]

@@ -21,10 +21,11 @@ pub(crate) fn run(options: &AscendOptions, common: &Common) -> Result<(), Failur
         .measure(&convention)
         .map_err(|e| Failure::usage(e.to_string()))?;
     let objective = measure.objective();
-    let constraints = limits::constraints(&options.limits, &objective)?;
+    let mut constraints = limits::constraints(&options.limits, &objective)?;
+    constraints.closed_holes = object.field().closed_patches().to_vec();
     if options.scheme == AscentScheme::Paper && !constraints.is_empty() {
         return Err(Failure::usage(
-            "--scheme paper does not support limits; use --scheme ours",
+            "--scheme paper supports neither limits nor surfaces that close holes; use --scheme ours",
         ));
     }
     let movement = Movement {

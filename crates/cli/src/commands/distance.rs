@@ -1,7 +1,6 @@
-//! `moduli distance`: distances between surfaces in the space of radial functions.
+//! `moduli distance`: distances between surfaces in the space of shapes.
 
-use moduli::Library;
-use moduli::records::stored_coefficients;
+use moduli::{Library, Object};
 use serde::Serialize;
 
 use crate::args::{Common, DistanceOptions};
@@ -19,17 +18,17 @@ pub(crate) fn run(options: &DistanceOptions, common: &Common) -> Result<(), Fail
     let mut shapes = Vec::new();
     for path in &options.shapes {
         let object = input::object(path)?;
-        shapes.push((
-            object.name().to_owned(),
-            object.shape().coefficients().clone(),
-        ));
+        shapes.push((object.name().to_owned(), object.field().clone()));
     }
     if shapes.len() == 1 {
         let records = Library::builtin().records().map_err(Failure::library)?;
         for entry in records.iter().flat_map(|record| &record.entries) {
-            let beta = stored_coefficients(&entry.shape)
+            let object = Object::from_record(&entry.shape)
                 .map_err(|e| Failure::other(format!("{}: {e}", entry.id)))?;
-            shapes.push((format!("{} {}", entry.id, entry.name), beta));
+            shapes.push((
+                format!("{} {}", entry.id, entry.name),
+                object.field().clone(),
+            ));
         }
     }
     let anchors = if options.shapes.len() == 1 {
@@ -37,12 +36,12 @@ pub(crate) fn run(options: &DistanceOptions, common: &Common) -> Result<(), Fail
     } else {
         shapes.len()
     };
-    for (i, (a, beta_a)) in shapes[..anchors].iter().enumerate() {
-        for (b, beta_b) in &shapes[i + 1..] {
+    for (i, (a, field_a)) in shapes[..anchors].iter().enumerate() {
+        for (b, field_b) in &shapes[i + 1..] {
             let line = DistanceLine {
                 a: a.clone(),
                 b: b.clone(),
-                distance_m: beta_a.distance(beta_b),
+                distance_m: space::distance_of(field_a, field_b),
             };
             if common.json {
                 output::say_json(&line)?;

@@ -1,13 +1,12 @@
 //! `moduli eval`: evaluates a surface at given directions.
 
-use moduli::{Object, SphericalObject};
+use moduli::Object;
 use serde::Serialize;
-use shape::Surface;
+use shape::{AnyShape, RadialShape, Surface};
 use sph::Direction;
 
 use crate::args::{Common, EvalOptions};
 use crate::failure::Failure;
-use crate::input::Surfaced;
 use crate::{input, output};
 
 /// Radius, its gradient (3) and the outward normal (3).
@@ -31,11 +30,11 @@ struct Evaluated {
 }
 
 pub(crate) fn run(options: &EvalOptions, common: &Common) -> Result<(), Failure> {
-    let surfaced = input::surfaced(&options.shape)?;
+    let object = input::object(&options.shape)?;
     let directions = input::directions(&options.directions)?;
-    let (model, evaluated) = match &surfaced {
-        Surfaced::Radial(object) => ("radial", radial(object, &directions)),
-        Surfaced::Spherical(object) => ("spherical", spherical(object, &directions)),
+    let (model, evaluated) = match object.shape() {
+        AnyShape::Radial(shape) => ("radial", radial(shape, &directions)),
+        AnyShape::Spherical(_) => ("spherical", spherical(&object, &directions)),
     };
     let bytes = output::npy(evaluated.columns, evaluated.values)?;
     output::write_file(&options.output, &bytes)?;
@@ -58,8 +57,7 @@ pub(crate) fn run(options: &EvalOptions, common: &Common) -> Result<(), Failure>
     Ok(())
 }
 
-fn radial(object: &Object, directions: &[Direction]) -> Evaluated {
-    let shape = object.shape();
+fn radial(shape: &RadialShape, directions: &[Direction]) -> Evaluated {
     let mut values = Vec::with_capacity(directions.len() * RADIAL);
     let mut radii = (f64::INFINITY, f64::NEG_INFINITY);
     for p in directions {
@@ -77,7 +75,7 @@ fn radial(object: &Object, directions: &[Direction]) -> Evaluated {
     }
 }
 
-fn spherical(object: &SphericalObject, directions: &[Direction]) -> Evaluated {
+fn spherical(object: &Object, directions: &[Direction]) -> Evaluated {
     let centre = object.frame().centre_in_cloud();
     let mut values = Vec::with_capacity(directions.len() * SPHERICAL);
     let mut radii = (f64::INFINITY, f64::NEG_INFINITY);

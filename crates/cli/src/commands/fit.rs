@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use moduli::Fitted;
 use moduli::records::scene_record;
 use record::grasps::SceneRecord;
 use serde::Serialize;
@@ -90,8 +91,12 @@ pub(crate) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> 
 fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Failure> {
     let scan = input::scan(path, &options.cloud.reading, seed)?;
     let start = Instant::now();
-    let made = input::fitted(&scan, &path.display().to_string(), &options.cloud)?;
-    let (object, fit) = (made.object, made.fit);
+    let name = path.display().to_string();
+    let made = input::fitted(&scan, &name, &options.cloud, moduli::Model::Radial)?;
+    let object = made.object;
+    let Fitted::Radial(fit) = made.fit else {
+        return Err(Failure::other(format!("{name}: the surface is not radial")));
+    };
     let seconds = start.elapsed().as_secs_f64();
     let points = scan.cloud.points().len();
     let report = object.report().clone();
@@ -99,8 +104,7 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Fail
     if let Some(target) = target(path, options) {
         let bytes = object
             .named(&input::stem(path))
-            .to_record()
-            .to_bytes()
+            .to_shape_file()
             .map_err(|e| Failure::other(e.to_string()))?;
         output::write_file(&target, &bytes)?;
     }

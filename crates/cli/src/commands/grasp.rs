@@ -12,11 +12,11 @@ use moduli::{
     HandSearch, Library, Measure, Plan, Planned, Poses, Progress, Stage, TransferOptions,
 };
 use record::GraspsFile;
-use record::grasps::SceneRecord;
+use record::grasps::{HoleRecord, SceneRecord, SurfaceModel};
 use serde::Serialize;
-use shape::PointCloud;
+use shape::{Embedding, PointCloud};
 
-use crate::args::{Common, GraspOptions};
+use crate::args::{Common, GraspOptions, SurfaceChoice};
 use crate::failure::Failure;
 use crate::input::Scan;
 use crate::outcomes::{reasons, sentence, why_none};
@@ -30,6 +30,14 @@ const UNSEEN: &str = "U1";
 struct GraspLine {
     object: String,
     points: usize,
+    /// How the surface is represented: `radial` or `spherical`.
+    model: SurfaceModel,
+    rms_m: f64,
+    surface_rms_m: Option<f64>,
+    unexplained_share: Option<f64>,
+    /// Whether a spherical surface is proved not to touch itself (`proved`) or to be an immersion only.
+    embedding: Option<&'static str>,
+    closed_holes: Vec<HoleRecord>,
     r_min_certified_m: f64,
     r_max_certified_m: f64,
     scene: Option<SceneRecord>,
@@ -60,6 +68,9 @@ struct GraspLine {
 
 pub(crate) fn run(options: &GraspOptions, common: &Common) -> Result<(), Failure> {
     let convention = input::convention(&options.convention)?;
+    if options.fit.heat.is_some() && options.model == SurfaceChoice::Spherical {
+        return Err(Failure::usage("--heat applies to radial surfaces only"));
+    }
     let hand = hands::load(&options.hand)?;
     let (library, warnings) = library_folder::beside_builtin(options.library.as_deref())?;
     warnings.iter().for_each(output::warn);
@@ -121,7 +132,7 @@ impl Shared<'_> {
     fn grasp(&self, name: &str, scan: &Scan, folder: &Path) -> Result<(), Failure> {
         let start = Instant::now();
         let (options, common, hand) = (self.options, self.common, &self.hand);
-        let made = input::fitted(scan, name, &options.fit)?;
+        let made = input::fitted(scan, name, &options.fit, options.model.into())?;
         let cloud = &made.cloud;
         let object = made.object.with_warnings(self.warnings.iter().cloned());
         let refused = |e: moduli::Error| Failure::refused(format!("{name}: {e}"));
@@ -169,13 +180,24 @@ fn line(
 ) -> GraspLine {
     let object = measure.object();
     let transferred = &planned.transferred;
-    let (r_min, r_max) = object.shape().radius_bounds();
+    let (r_min, r_max) = object.radius_bounds();
+    let report = object.report();
+    let residual = |name: &str| report.residuals.get(name).copied();
     GraspLine {
         object: object.name().to_owned(),
         points: cloud.points().len(),
+        model: object.model(),
+        rms_m: report.rms,
+        surface_rms_m: residual("surface_rms_m"),
+        unexplained_share: residual("unexplained_share"),
+        embedding: report.embedding.map(|embedding| match embedding {
+            Embedding::Proved { .. } => "proved",
+            Embedding::Undecided { .. } => "immersion",
+        }),
+        closed_holes: object.object_record().closed_holes,
         r_min_certified_m: r_min,
         r_max_certified_m: r_max,
-        scene: object.report().scene.as_ref().map(scene_record),
+        scene: report.scene.as_ref().map(scene_record),
         hand: hand.name().to_owned(),
         neighbours: transferred.neighbours.iter().map(described).collect(),
         transferred: transferred.all,
@@ -193,7 +215,7 @@ fn line(
         grasps_json: written.grasps_json.display().to_string(),
         grasps_yaml: written.grasps_yaml.display().to_string(),
         index_html: written.index_html.display().to_string(),
-        warnings: object.report().warnings.clone(),
+        warnings: report.warnings.clone(),
         seconds,
     }
 }
@@ -283,14 +305,39 @@ fn farthest_contact(file: &GraspsFile, cloud: &PointCloud) -> f64 {
 }
 
 impl GraspLine {
+    /// What is proved of the surface.
+    fn surface(&self) -> String {
+        match (self.model, self.embedding) {
+            (SurfaceModel::Radial, _) => format!(
+                "radial surface, proved between {:.1} and {:.1} mm from its centre",
+                1e3 * self.r_min_certified_m,
+                1e3 * self.r_max_certified_m
+            ),
+            (SurfaceModel::Spherical, embedding) => format!(
+                "spherical surface, {:.2} mm from the points (root mean square), proved {}",
+                1e3 * self.rms_m,
+                match embedding {
+                    Some("proved") => "not to touch itself",
+                    _ => "an immersion",
+                }
+            ),
+        }
+    }
+
     fn say_found(&self, hand: &Hand, synthesis: &str) {
         output::say(format!(
-            "{}: {} points, surface proved between {:.1} and {:.1} mm from its centre",
+            "{}: {} points, {}",
             self.object,
             self.points,
-            1e3 * self.r_min_certified_m,
-            1e3 * self.r_max_certified_m
+            self.surface()
         ));
+        for hole in &self.closed_holes {
+            let [x, y, z] = hole.centre_m;
+            output::say(format!(
+                "a hole of {:.1} cm² at ({x:.3}, {y:.3}, {z:.3}) m was closed; no contact is placed there",
+                1e4 * hole.area_m2
+            ));
+        }
         output::say(format!(
             "nearest known objects: {}",
             self.neighbours.join(", ")

@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use moduli::SphericalObject;
+use moduli::Object;
 use moduli::records::stored_shape;
 use record::{
     GraspsFile, GraspsFileError, Kind, LibraryObjectRecord, LibraryRecord, ShapeRecord,
     SphericalRecord,
 };
 use serde_json::{Map, Value, json};
+use shape::SphericalShape;
 use shape::io::{Geometry, Loaded, Warning};
 
 use crate::args::{Common, InfoOptions};
@@ -49,8 +50,11 @@ fn facts(path: &Path) -> Result<Vec<Fact>, Failure> {
         }
         Some(Kind::Spherical) => {
             let record = SphericalRecord::from_bytes(&bytes).map_err(|e| refused(&e))?;
-            let object = SphericalObject::from_record(&record).map_err(|e| refused(&e))?;
-            Ok(spherical_facts(&object))
+            let object = Object::from_spherical_record(&record).map_err(|e| refused(&e))?;
+            Ok(object
+                .shape()
+                .spherical()
+                .map_or_else(Vec::new, |s| spherical_facts(&object, s)))
         }
         Some(Kind::Library) => {
             let record = LibraryRecord::from_bytes(&bytes).map_err(|e| refused(&e))?;
@@ -111,14 +115,14 @@ fn shape_facts(record: &ShapeRecord) -> Result<Vec<Fact>, moduli::records::Store
     ])
 }
 
-fn spherical_facts(object: &SphericalObject) -> Vec<Fact> {
-    let shape = object.shape();
+fn spherical_facts(object: &Object, shape: &SphericalShape) -> Vec<Fact> {
     let immersion = shape.immersion();
-    let [x, y, z] = object.lambda();
-    let rms = object.rms();
+    let report = object.report();
+    let [x, y, z] = report.lambda_xyz.unwrap_or_default();
+    let rms = report.rms;
     let volume = shape.mass_properties().volume;
     let centre: [f64; 3] = object.frame().centre_in_cloud().into();
-    vec![
+    let mut facts = vec![
         fact(
             format!(
                 "shape       {}, a map of the sphere",
@@ -140,10 +144,10 @@ fn spherical_facts(object: &SphericalObject) -> Vec<Fact> {
         fact(
             format!(
                 "fit         {} points, rms {:.3} mm, λ {x:.3e}, {y:.3e}, {z:.3e}",
-                object.points(),
+                report.points,
                 1e3 * rms
             ),
-            json!({ "points": object.points(), "rms_m": rms, "lambda": [x, y, z] }),
+            json!({ "points": report.points, "rms_m": rms, "lambda": [x, y, z] }),
         ),
         fact(
             format!("volume      {:.2} cm³", 1e6 * volume),
@@ -153,7 +157,21 @@ fn spherical_facts(object: &SphericalObject) -> Vec<Fact> {
             format!("centre      {centre:?} m in the frame of the cloud"),
             json!({ "centre_m": centre }),
         ),
-    ]
+    ];
+    let holes = object.object_record().closed_holes;
+    facts.extend(holes.iter().map(|hole| {
+        let [x, y, z] = hole.centre_m;
+        let line = format!(
+            "closed hole {:.1} cm² at ({x:.4}, {y:.4}, {z:.4}) m",
+            1e4 * hole.area_m2
+        );
+        fact(line, Value::Null)
+    }));
+    facts.push(fact(
+        format!("holes       {} closed", holes.len()),
+        json!({ "closed_holes": holes }),
+    ));
+    facts
 }
 
 fn library_facts(record: &LibraryRecord) -> Vec<Fact> {

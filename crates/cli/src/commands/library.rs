@@ -212,7 +212,7 @@ impl<'a> Maker<'a> {
         let options = self.options;
         let name = input::stem(path);
         let scan = input::scan(path, &options.fit.reading, self.common.seed)?;
-        let object = input::fitted(&scan, &name, &options.fit)?.object;
+        let object = input::fitted(&scan, &name, &options.fit, moduli::Model::Radial)?.object;
         let refused = |e: moduli::Error| Failure::refused(format!("{name}: {e}"));
         let measure = object.measure(&self.convention).map_err(refused)?;
         let poses = Poses {
@@ -226,6 +226,9 @@ impl<'a> Maker<'a> {
             ..Kept::default()
         };
         let entry = object.library_entry(&name, &name, &found, &kept);
+        let entry = entry.ok_or_else(|| {
+            Failure::refused(format!("{name}: a library holds radial surfaces only"))
+        })?;
         if entry.grasps.is_empty() {
             output::warn(format!(
                 "{name}: the hand {} finds no stable grasp; the object is stored without grasps",

@@ -4,7 +4,6 @@ use shape::io::{MeshFormat, write_mesh};
 
 use crate::args::MeshOptions;
 use crate::failure::Failure;
-use crate::input::Surfaced;
 use crate::{input, output};
 
 pub(crate) fn run(options: &MeshOptions) -> Result<(), Failure> {
@@ -18,12 +17,10 @@ pub(crate) fn run(options: &MeshOptions) -> Result<(), Failure> {
         ))
     })?;
     let (rows, columns) = (options.rows, options.columns);
-    let (mut mesh, frame) = match input::surfaced(&options.shape)? {
-        Surfaced::Radial(object) => (object.shape().mesh(rows, columns), *object.frame()),
-        Surfaced::Spherical(object) => (object.shape().mesh(rows, columns), *object.frame()),
-    };
+    let object = input::object(&options.shape)?;
+    let mut mesh = object.shape().mesh(rows, columns);
     for vertex in &mut mesh.vertices {
-        *vertex = frame.to_cloud(vertex);
+        *vertex = object.frame().to_cloud(vertex);
     }
     let mut bytes = Vec::new();
     write_mesh(&mesh, format, &mut bytes)

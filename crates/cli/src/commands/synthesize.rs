@@ -7,6 +7,7 @@ use std::time::Instant;
 use grasp::Convention;
 use hand::{Hand, OutcomeCounts};
 use moduli::{Grasps, Measure, Poses, ranked};
+use record::grasps::SurfaceModel;
 use serde::Serialize;
 
 use crate::args::{Common, SynthesizeOptions};
@@ -22,6 +23,8 @@ const POWER_NEARER: f64 = 0.3;
 #[derive(Serialize)]
 struct SynthesizeLine<'a> {
     object: &'a str,
+    /// How the surface is represented: `radial` or `spherical`.
+    model: SurfaceModel,
     hand: &'a str,
     fingers: usize,
     preshapes: Vec<&'a str>,
@@ -164,6 +167,7 @@ impl<'a> Run<'a> {
         let drawn = &self.poses.preshapes;
         SynthesizeLine {
             object: self.measure.object().name(),
+            model: self.measure.object().model(),
             hand: self.hand.name(),
             fingers: self.hand.fingers().len(),
             preshapes: preshapes

@@ -9,16 +9,19 @@ use grasp::Convention;
 use moduli::Object;
 use nalgebra::Point3;
 use record::grasps::SourceRecord;
-use shape::{RadialField, Surface, algebra};
+use shape::Surface;
+use shape::closed_patch::patch_at;
 use space::{
     Constraints, Continuation, Objective, PaperTransfer, Step, Transfer, TransferEnd,
-    TransferError, Transferred,
+    TransferError, Transferred, distance_of,
 };
+use sph::Direction;
 
 use crate::args::{Common, TransferOptions, TransferScheme};
 use crate::failure::Failure;
 use crate::moved::{Given, Moved, TraceStep, given};
 use crate::movement::Movement;
+use crate::output::warn;
 use crate::{input, limits};
 
 /// The scheme of the transfer.
@@ -44,8 +47,12 @@ fn one_pair(
 ) -> Result<(), Failure> {
     let convention = input::convention(&options.moved.convention)?;
     let (from, to) = (input::object(from)?, input::object(to)?);
-    let (grasps, warnings) = given(&from, path)?;
+    let (grasps, mut warnings) = given(&from, path)?;
     let transfer = between(&from, &to, &convention);
+    for warning in crossings(&transfer, &to).map_err(|e| Failure::other(e.to_string()))? {
+        warn(&warning);
+        warnings.push(warning);
+    }
     let start = Instant::now();
     let measure = to
         .measure(&convention)
@@ -62,6 +69,26 @@ fn one_pair(
     movement.run(&grasps, &options.moved, common, |i, placed| {
         carry(options, &scheme, &transfer, &to, placed, &origin).map_err(|e| failed(path, i, &e))
     })
+}
+
+/// The stations of the deformation that cut or fold themselves, a sentence each.
+fn crossings(transfer: &Transfer, to: &Object) -> Result<Vec<String>, TransferError> {
+    let found = transfer.crossing_stations(Continuation::default().intervals)?;
+    let sentence = |(t, place): (f64, Point3<f64>)| {
+        let x = to.frame().to_cloud(&place);
+        format!(
+            "the shape between the two objects at t = {t:.2} cuts or folds itself, around ({:.4}, {:.4}, {:.4}) m in the frame of the target; contacts pass it as it is",
+            x.x, x.y, x.z
+        )
+    };
+    Ok(found.into_iter().map(sentence).collect())
+}
+
+/// Whether a contact lies on a part of the surface that closes a hole.
+fn on_closed_hole(object: &Object, directions: &[Direction]) -> bool {
+    let patches = object.field().closed_patches();
+    let on = |p: &Direction| patch_at(patches, &object.field().point(p)).is_some();
+    !patches.is_empty() && directions.iter().any(on)
 }
 
 fn failed(path: &Path, index: usize, error: &TransferError) -> Failure {
@@ -121,7 +148,7 @@ impl Origin {
     fn new(from: &Object, to: &Object) -> Self {
         Self {
             name: from.name().to_owned(),
-            distance: algebra::distance(from.shape(), to.shape()),
+            distance: distance_of(from.field(), to.field()),
         }
     }
 }
@@ -148,11 +175,13 @@ fn carry(
         Scheme::Paper => PaperTransfer::PAPER.carry_traced(transfer, start, keep)?,
         Scheme::Naive => transfer.naive(start)?,
     };
+    let on_hole = on_closed_hole(to, &end.directions);
+    let hole = on_hole.then(|| "a contact lies where a hole of the object was closed".to_owned());
     Ok(Moved {
-        reason: end.open.map(|open| open.to_string()),
+        reason: hole.or_else(|| end.open.map(|open| open.to_string())),
         directions: end.directions,
         start_quality: end.start_quality,
-        quality: end.quality,
+        quality: if on_hole { 0.0 } else { end.quality },
         evaluations: end.evaluations,
         stationarity: end.stationarity,
         source: SourceRecord::Transfer {
@@ -164,11 +193,12 @@ fn carry(
     })
 }
 
-/// Contacts on γ(t), where r = (1−t) r₁ + t r₂, in the frame of the target's cloud.
+/// Contacts on γ(t) = (1−t) f₁ + t f₂, in the frame of the target's cloud.
 fn points(transfer: &Transfer, to: &Object, t: f64, step: &Step) -> Vec<[f64; 3]> {
-    let on = |surface: &RadialField, p| surface.point(p).coords;
-    let between =
-        |p| Point3::from(on(transfer.source(), p) * (1.0 - t) + on(transfer.target(), p) * t);
+    let between = |p| {
+        let [from, to] = transfer.ends_of(p);
+        Point3::from(from.coords * (1.0 - t) + to.coords * t)
+    };
     step.directions
         .iter()
         .map(|p| to.frame().to_cloud(&between(p)).into())

@@ -70,8 +70,104 @@ fn a_bent_rod_is_fitted_evaluated_meshed_and_described() {
     let mesh = shape::io::read_ply(&std::fs::read(here.join("rod.ply")).unwrap()).unwrap();
     assert!(mesh.points.iter().all(|p| (p.y - 2.0).abs() <= 0.0121));
     assert!(stdout(&moduli(here, &["info", "rod.shape"])).contains("immersion   proved"));
-    let grasp = moduli(here, &["synthesize", "rod.shape"]);
-    refused(&grasp, 3, &["rod.shape", "radial"]);
+}
+
+/// A tube bent by half a turn: 32 mm thick, open towards the middle of its circle.
+fn tube(p: &sph::Direction) -> [f64; 3] {
+    let (sin, cos) = (1.5 * p.z).sin_cos();
+    let (out, along) = (0.06 + 0.016 * p.x, 0.006 * p.z);
+    [
+        0.5 + out * cos - along * sin,
+        0.016 * p.y,
+        0.2 + out * sin + along * cos,
+    ]
+}
+
+fn write_cloud(folder: &Path, name: &str, points: impl Iterator<Item = [f64; 3]>) {
+    let text: String = points.map(|[x, y, z]| format!("{x} {y} {z}\n")).collect();
+    std::fs::write(folder.join(name), text).unwrap();
+}
+
+#[test]
+fn a_bent_tube_is_grasped_where_it_is_and_as_the_shape_that_was_stored() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let directions = sph::direction::even_directions(4000);
+    write_cloud(here, "tube.xyz", directions.iter().map(tube));
+    let arguments = [
+        "grasp", "tube.xyz", "-o", "out", "--degree", "12", "--json", "-q",
+    ];
+    let fewer = ["--poses", "120", "--transfers", "1", "--reach-starts", "3"];
+    let run = moduli(here, &[&arguments[..], &fewer[..]].concat());
+    let line: serde_json::Value = serde_json::from_str(&stdout(&run)).unwrap();
+    assert_eq!(line["model"], "spherical");
+    assert_eq!(line["embedding"], "proved");
+    assert_eq!(line["closed_holes"].as_array().unwrap().len(), 0);
+    assert!(line["grasps"].as_u64().unwrap() >= 3, "{line}");
+    assert!(line["surface_rms_m"].as_f64().unwrap() < 3e-4, "{line}");
+    let file = std::fs::read(here.join("out/grasps.json")).unwrap();
+    let file = record::GraspsFile::from_json(&file).unwrap();
+    assert_eq!(
+        file.object.model,
+        Some(record::grasps::SurfaceModel::Spherical)
+    );
+    let cloud: Vec<[f64; 3]> = directions.iter().map(tube).collect();
+    for contact in file.grasps.iter().flat_map(|g| &g.contacts_m) {
+        let squared = cloud
+            .iter()
+            .map(|p| (0..3).map(|k| (p[k] - contact[k]).powi(2)).sum::<f64>());
+        assert!(
+            squared.fold(f64::INFINITY, f64::min).sqrt() < 2.5e-3,
+            "{contact:?}"
+        );
+    }
+    let page = std::fs::read_to_string(here.join("out/index.html")).unwrap();
+    assert!(page.contains("proved to be smooth and not to touch itself"));
+
+    // No radius describes it, and half of it is no surface of anything.
+    let radial = moduli(
+        here,
+        &["grasp", "tube.xyz", "--degree", "12", "--model", "radial"],
+    );
+    refused(&radial, 4, &["tube: ", "not star-shaped"]);
+    let shell = directions.iter().map(tube).filter(|x| x[1] > 0.004);
+    write_cloud(here, "shell.xyz", shell);
+    let shell = moduli(here, &["grasp", "shell.xyz", "--degree", "12"]);
+    refused(&shell, 4, &["shell: ", "map of the sphere"]);
+
+    let fit = [
+        "fit",
+        "tube.xyz",
+        "--model",
+        "spherical",
+        "--degree",
+        "12",
+        "-o",
+        "tube.shape",
+    ];
+    stdout(&moduli(here, &fit));
+    let poses = [
+        "synthesize",
+        "tube.shape",
+        "--poses",
+        "120",
+        "--json",
+        "-o",
+        "made",
+    ];
+    let line: serde_json::Value = serde_json::from_str(&stdout(&moduli(here, &poses))).unwrap();
+    assert_eq!(line["model"], "spherical");
+    assert!(line["stable"].as_u64().unwrap() >= 3, "{line}");
+    let ascend = [
+        "ascend",
+        "tube.shape",
+        "out/grasps.json",
+        "-o",
+        "up.json",
+        "--json",
+    ];
+    let line: serde_json::Value = serde_json::from_str(&stdout(&moduli(here, &ascend))).unwrap();
+    assert!(line["grasps"].as_u64().unwrap() >= 3, "{line}");
 }
 
 #[test]

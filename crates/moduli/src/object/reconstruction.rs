@@ -5,22 +5,39 @@ use nalgebra::Point3;
 use shape::acceptance::noise;
 use shape::scene::{analyse, distinct};
 use shape::{
-    Acceptance, Fit, FitSettings, PointCloud, Scene, SceneSettings, SupportSource, Surface, Verdict,
+    Acceptance, Fit, FitError, FitSettings, PointCloud, Scene, SceneSettings, SphericalCloudFit,
+    SphericalSettings, SupportSource, Surface, Verdict, fit_spherical_cloud,
 };
 use sph::Direction;
 
-use super::Object;
+use super::{Object, STEEP};
 use crate::error::Error;
 
+/// A radial surface with a larger share of the directions without a point is not tried as a map.
+const MOST_UNSEEN: f64 = 0.1;
 /// Outliers are left out of the verdict on a surface up to this share of the points.
 const MOST_OUTLIERS: f64 = 1.0 / 3.0;
+
+/// The kind of surface that is fitted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Model {
+    /// Radial where a radius explains the points, else a map of the sphere.
+    #[default]
+    Auto,
+    /// A radius per direction from the mean of the cloud: M^rad.
+    Radial,
+    /// A map of the sphere: M^sph.
+    Spherical,
+}
 
 /// How points become an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReconstructionSettings {
     /// Degree and penalty of the fit.
     pub fit: FitSettings,
-    /// Time of the heat flow that smooths the surface, see [`Fit::smoothed`].
+    /// The kind of surface.
+    pub model: Model,
+    /// Time of the heat flow that smooths a radial surface, see [`Fit::smoothed`].
     pub heat: Option<f64>,
     /// How the object is found among the points; `None` where all points are the object's.
     pub scene: Option<SceneSettings>,
@@ -33,6 +50,7 @@ impl ReconstructionSettings {
     pub fn new(fit: FitSettings) -> Self {
         Self {
             fit,
+            model: Model::Auto,
             heat: None,
             scene: Some(SceneSettings::default()),
             accept_misfit: false,
@@ -46,9 +64,18 @@ pub struct Reconstruction {
     /// The object.
     pub object: Object,
     /// The fit of its surface.
-    pub fit: Fit,
+    pub fit: Fitted,
     /// Its points, each distinct one once, in the frame of the cloud.
     pub cloud: PointCloud,
+}
+
+/// A fit of either kind.
+#[derive(Clone, Debug)]
+pub enum Fitted {
+    /// A radius.
+    Radial(Box<Fit>),
+    /// A map of the sphere.
+    Spherical(Box<SphericalCloudFit>),
 }
 
 /// The object among some points, metres.
@@ -57,9 +84,12 @@ pub struct Reconstruction {
 /// surface is fitted to the rest, and its distances from the points decide whether it is accepted
 /// ([`shape::acceptance`]). The result depends on the set of points alone, up to rounding.
 ///
+/// With [`Model::Auto`] the surface is radial where a radius explains the points. Where the cloud is not
+/// star-shaped, or the radial surface does not explain it, a map of the sphere is fitted
+/// ([`fit_spherical_cloud`]).
+///
 /// # Errors
-/// No piece of the cloud dominates; the piece has no proved surface; the surface does not explain its
-/// points, and [`ReconstructionSettings::accept_misfit`] is not set.
+/// No piece of the cloud dominates; the piece has no proved surface; no surface explains its points, and [`ReconstructionSettings::accept_misfit`] is not set.
 pub fn reconstruct(
     name: &str,
     cloud: &PointCloud,
@@ -67,33 +97,136 @@ pub fn reconstruct(
 ) -> Result<Reconstruction, Error> {
     let whole = cloud;
     let (cloud, scene) = object_points(cloud, settings.scene.as_ref())?;
-    let mut fit = shape::fit::fit(&cloud, &settings.fit)?;
-    if let Some(sigma) = settings.heat {
-        fit = fit.smoothed(&cloud, sigma)?;
-    }
-    let object = Object::from_fit(name, fit.clone(), cloud.points().len());
-    let acceptance = accepted(&object, &fit, &cloud);
-    let mut object = object.with_acceptance(acceptance);
+    let (object, fit) = match settings.model {
+        Model::Radial => radial(name, &cloud, scene.as_ref(), settings)?,
+        Model::Spherical => spherical(name, &cloud, scene.as_ref(), settings)?,
+        Model::Auto => {
+            let first = radial(name, &cloud, scene.as_ref(), settings);
+            if settings.heat.is_none() && may_be_a_map(&first) {
+                let second = spherical(name, &cloud, scene.as_ref(), settings);
+                better(first, second)?
+            } else {
+                first?
+            }
+        }
+    };
     let others = scene.iter().flat_map(|s| &s.others);
     let obstacles: Vec<Point3<f64>> = others.map(|i| whole.points()[*i]).collect();
-    // Heat moves the surface away from the scan, and hands with it.
-    let scan = match settings.heat {
-        None => inliers(&fit, &cloud),
-        Some(_) => Vec::new(),
+    let scan = match (&fit, settings.heat) {
+        (Fitted::Radial(fit), None) => inliers(fit, &cloud),
+        // Heat moves the surface away from the scan, and hands with it.
+        (Fitted::Radial(_), Some(_)) => Vec::new(),
+        (Fitted::Spherical(_), _) => cloud.points().to_vec(),
     };
-    object = object.with_surroundings(&obstacles, &scan);
-    if let Some(scene) = scene {
-        let notes = scene_notes(&scene);
-        object = object.with_scene(scene, notes);
+    Ok(Reconstruction {
+        object: object.with_surroundings(&obstacles, &scan),
+        fit,
+        cloud,
+    })
+}
+
+/// An object with its fit.
+type Made = Result<(Object, Fitted), Error>;
+
+/// Whether another kind of surface may describe the points of such a radial fit: one that failed since the
+/// object is not star-shaped, or that follows the points only roughly and is as steep as a star-shaped body
+/// seldom is.
+fn may_be_a_map(radial: &Made) -> bool {
+    match radial {
+        Err(error) => matches!(
+            error,
+            Error::Unexplained { .. }
+                | Error::Fit(
+                    FitError::NotStarShaped { .. }
+                        | FitError::OpenContainer { .. }
+                        | FitError::Radial(_)
+                        | FitError::Overshoot { .. }
+                )
+        ),
+        Ok((object, Fitted::Radial(fit))) => {
+            let verdict = object.report().acceptance.map(|a| a.verdict());
+            verdict == Some(Verdict::Coarse)
+                && fit.max_abs > STEEP * fit.shape.mean_radius()
+                && fit.visibility.unobserved <= MOST_UNSEEN
+        }
+        Ok(_) => false,
     }
+}
+
+/// The map where it explains the points, or where there is no radial surface.
+fn better(radial: Made, spherical: Made) -> Made {
+    let explained = |made: &(Object, Fitted)| {
+        let acceptance = made.0.report().acceptance;
+        acceptance.is_some_and(|a| a.verdict() == Verdict::Explained)
+    };
+    match (radial, spherical) {
+        (Ok(radial), Ok(spherical)) if !explained(&spherical) => Ok(radial),
+        (_, Ok(spherical)) => Ok(spherical),
+        (Ok(radial), Err(_)) => Ok(radial),
+        (Err(radial), Err(spherical)) => Err(Error::NeitherModel {
+            radial: Box::new(radial),
+            spherical: Box::new(spherical),
+        }),
+    }
+}
+
+fn radial(
+    name: &str,
+    cloud: &PointCloud,
+    scene: Option<&Scene>,
+    settings: &ReconstructionSettings,
+) -> Made {
+    let mut fit = shape::fit::fit(cloud, &settings.fit)?;
+    if let Some(sigma) = settings.heat {
+        fit = fit.smoothed(cloud, sigma)?;
+    }
+    let object = Object::from_fit(name, fit.clone(), cloud.points().len());
+    let acceptance = accepted(&object, &fit, cloud);
     // Heat moves the surface away from the points because the caller wants that.
     let may_miss = settings.accept_misfit || settings.heat.is_some();
+    let object = judged(object, acceptance, scene, may_miss)?;
+    Ok((object, Fitted::Radial(Box::new(fit))))
+}
+
+fn spherical(
+    name: &str,
+    cloud: &PointCloud,
+    scene: Option<&Scene>,
+    settings: &ReconstructionSettings,
+) -> Made {
+    let fit = fit_spherical_cloud(
+        cloud,
+        &SphericalSettings {
+            degree: settings.fit.degree,
+            lambda: settings.fit.lambda,
+            accept_misfit: settings.accept_misfit,
+        },
+    )?;
+    let object = Object::from_spherical_cloud_fit(name, fit.clone());
+    Ok((in_scene(object, scene), Fitted::Spherical(Box::new(fit))))
+}
+
+/// The object with the verdict on its surface and its scene, unless the points are not explained.
+fn judged(
+    object: Object,
+    acceptance: Acceptance,
+    scene: Option<&Scene>,
+    may_miss: bool,
+) -> Result<Object, Error> {
+    let object = in_scene(object.with_acceptance(acceptance), scene);
     if acceptance.verdict() == Verdict::Unexplained && !may_miss {
         return Err(Error::Unexplained {
             notes: object.report().warnings.clone(),
         });
     }
-    Ok(Reconstruction { object, fit, cloud })
+    Ok(object)
+}
+
+fn in_scene(object: Object, scene: Option<&Scene>) -> Object {
+    match scene {
+        Some(scene) => object.with_scene(scene.clone(), scene_notes(scene)),
+        None => object,
+    }
 }
 
 /// The points of the object among those of a scene, each distinct one once, and what else was there.

@@ -1,7 +1,7 @@
 //! Objects whose surface is a map of the sphere.
 
 use moduli::nalgebra::Point3;
-use moduli::{Error, FitSettings, PointCloud, SphericalObject};
+use moduli::{Convention, Error, FitSettings, Object, PointCloud};
 
 const SETTINGS: FitSettings = FitSettings {
     degree: 4,
@@ -19,10 +19,10 @@ fn ball() -> (PointCloud, Vec<sph::Direction>) {
 #[test]
 fn a_spherical_object_comes_back_from_its_record() {
     let (cloud, directions) = ball();
-    let object = SphericalObject::fit("ball", &cloud, &directions, &SETTINGS).unwrap();
-    let bytes = object.to_record().to_bytes().unwrap();
+    let object = Object::from_directions("ball", &cloud, &directions, &SETTINGS).unwrap();
+    let bytes = object.to_spherical_record().unwrap().to_bytes().unwrap();
     let stored = moduli::record::SphericalRecord::from_bytes(&bytes).unwrap();
-    let again = SphericalObject::from_record(&stored).unwrap();
+    let again = Object::from_spherical_record(&stored).unwrap();
     for p in &directions {
         assert_eq!(again.at(p), object.at(p));
         assert!((again.at(p).mean_curvature() - 25.0).abs() < 1e-3);
@@ -32,19 +32,52 @@ fn a_spherical_object_comes_back_from_its_record() {
 }
 
 #[test]
+fn closed_holes_are_kept_and_no_contact_climbs_onto_them() {
+    let (cloud, directions) = ball();
+    let object = Object::from_directions("ball", &cloud, &directions, &SETTINGS).unwrap();
+    let centre = object.frame().centre_in_cloud().coords;
+    let mut record = object.to_spherical_record().unwrap();
+    record.closed_holes = vec![moduli::record::ClosedHoleRecord {
+        places_m: vec![(Point3::new(0.0, 0.0, 0.04) + centre).into()],
+        reach_m: 0.03,
+        area_m2: 1e-3,
+    }];
+    let file = record.to_bytes().unwrap();
+    let object = Object::from_shape_file(&file).unwrap();
+    assert_eq!(object.to_shape_file().unwrap(), file);
+    assert_eq!(object.object_record().closed_holes.len(), 1);
+    let patch = object.shape().closed_patches()[0].clone();
+    let measure = object.measure(&Convention::paper()).unwrap();
+    let start = [
+        [0.039, 0.0, 0.01],
+        [-0.02, 0.034, 0.0],
+        [-0.02, -0.034, 0.0],
+    ]
+    .map(|p| (Point3::from(p) + centre).into());
+    let grasp = measure.grasp_at(&start).unwrap();
+    let better = measure.ascend(&grasp).unwrap();
+    assert!(better.quality() >= grasp.quality());
+    for contact in better.contacts() {
+        assert!(patch.distance(&contact.position) >= 0.0);
+    }
+    record.closed_holes[0].reach_m = f64::NAN;
+    assert!(Object::from_spherical_record(&record).is_err());
+}
+
+#[test]
 fn stored_nonsense_is_refused() {
     let (cloud, directions) = ball();
-    let object = SphericalObject::fit("ball", &cloud, &directions, &SETTINGS).unwrap();
-    let mut lost = object.to_record();
+    let object = Object::from_directions("ball", &cloud, &directions, &SETTINGS).unwrap();
+    let mut lost = object.to_spherical_record().unwrap();
     lost.centre_in_cloud_m[0] = f64::NAN;
-    assert!(SphericalObject::from_record(&lost).is_err());
-    let mut flat = object.to_record();
+    assert!(Object::from_spherical_record(&lost).is_err());
+    let mut flat = object.to_spherical_record().unwrap();
     flat.coordinates[2].fill(0.0);
-    assert!(SphericalObject::from_record(&flat).is_err());
-    let mut inside_out = object.to_record();
+    assert!(Object::from_spherical_record(&flat).is_err());
+    let mut inside_out = object.to_spherical_record().unwrap();
     inside_out.coordinates[0].iter_mut().for_each(|b| *b = -*b);
-    assert!(SphericalObject::from_record(&inside_out).is_err());
-    let few = SphericalObject::fit("ball", &cloud, &directions[1..], &SETTINGS);
+    assert!(Object::from_spherical_record(&inside_out).is_err());
+    let few = Object::from_directions("ball", &cloud, &directions[1..], &SETTINGS);
     assert!(matches!(
         few,
         Err(Error::DirectionCount {

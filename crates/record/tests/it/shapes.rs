@@ -1,6 +1,8 @@
 //! Shape and library files.
 
-use record::{EnvelopeError, LibraryGrasp, LibraryRecord, ShapeRecord};
+use record::{
+    ClosedHoleRecord, EnvelopeError, LibraryGrasp, LibraryRecord, ShapeRecord, SphericalRecord,
+};
 
 fn shape() -> ShapeRecord {
     ShapeRecord {
@@ -66,4 +68,36 @@ fn directions_of_another_length_than_one_are_refused() {
     assert_eq!(grasp.directions(), None);
     grasp.directions[1][0] = f64::NAN;
     assert_eq!(grasp.directions(), None);
+}
+
+#[test]
+fn a_spherical_shape_keeps_its_closed_holes_and_one_without_them_is_read() {
+    let plain = SphericalRecord {
+        name: "mug".to_owned(),
+        coordinates: [vec![0.0, 0.01], vec![0.0, 0.02], vec![0.0, 0.03]],
+        centre_in_cloud_m: [0.1, 0.2, 0.3],
+        lambda: [1e-6; 3],
+        rms_m: 3e-4,
+        points: 25_000,
+        notes: record::ShapeNotes::default(),
+        closed_holes: Vec::new(),
+    };
+    let mut noted = plain.clone();
+    noted.notes.warnings = vec!["a hole was closed".to_owned()];
+    noted.closed_holes = vec![ClosedHoleRecord {
+        places_m: vec![[0.03, 0.0, 0.04], [0.031, 0.0, 0.04]],
+        reach_m: 3e-3,
+        area_m2: 8e-4,
+    }];
+    let bytes = noted.to_bytes().unwrap();
+    assert_eq!(SphericalRecord::from_bytes(&bytes), Ok(noted));
+    // The layout of version 1: the shape alone.
+    let mut old = record::envelope::encode(record::Kind::Spherical, &plain).unwrap();
+    old[10] = 1;
+    assert_eq!(SphericalRecord::from_bytes(&old), Ok(plain));
+    old[10] = 3;
+    assert!(matches!(
+        SphericalRecord::from_bytes(&old),
+        Err(EnvelopeError::Version { found: 3, .. })
+    ));
 }

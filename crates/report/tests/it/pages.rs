@@ -47,6 +47,7 @@ fn object(text: &str) -> GraspPage {
         title: text.to_owned(),
         subtitle_lines: vec![text.to_owned()],
         mesh: tetrahedron(),
+        closed_holes: Mesh::default(),
         cloud: vec![[0.02, 0.03, 0.041_114]; 9000],
         friction: 0.5,
         grasps: vec![grasp(text), grasp("synthesis")],

@@ -26,13 +26,7 @@ pub(super) fn distances(
     starts: Option<&[Direction]>,
     tolerance: f64,
 ) -> Vec<f64> {
-    let directions = even_directions(PLACES);
-    let places: Vec<Point3<f64>> = directions.iter().map(|p| surface.point(p)).collect();
-    let nearest = |x: &Point3<f64>| {
-        let squares = places.iter().map(|f| (f - x).norm_squared());
-        let best = squares.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
-        best.map_or(directions[0], |(k, _)| directions[k])
-    };
+    let places = Places::new(surface);
     points
         .par_iter()
         .enumerate()
@@ -45,16 +39,54 @@ pub(super) fn distances(
                     return (x - f).dot(&normal).abs();
                 }
             }
-            match start.map(|p| search(surface, x, *p)) {
+            match start.map(|p| search(surface, x, *p).1) {
                 Some(distance) if distance <= tolerance => distance,
-                other => search(surface, x, nearest(x)).min(other.unwrap_or(f64::INFINITY)),
+                other => {
+                    let found = search(surface, x, places.nearest(x)).1;
+                    found.min(other.unwrap_or(f64::INFINITY))
+                }
             }
         })
         .collect()
 }
 
-/// The least distance that Gauss–Newton steps on the sphere find from a direction.
-fn search(surface: &impl Surface, x: &Point3<f64>, start: Direction) -> f64 {
+/// The place on a surface nearest to each point, and its distance in metres.
+///
+/// The search begins at the nearest of 4,000 places on the surface; it may end at a local minimum of the
+/// distance.
+pub fn nearest_places(
+    surface: &(impl Surface + Sync),
+    points: &[Point3<f64>],
+) -> Vec<(Direction, f64)> {
+    let places = Places::new(surface);
+    let one = |x: &Point3<f64>| search(surface, x, places.nearest(x));
+    points.par_iter().map(one).collect()
+}
+
+/// Places on a surface from which searches begin.
+struct Places {
+    directions: Vec<Direction>,
+    points: Vec<Point3<f64>>,
+}
+
+impl Places {
+    fn new(surface: &impl Surface) -> Self {
+        let directions = even_directions(PLACES);
+        Self {
+            points: directions.iter().map(|p| surface.point(p)).collect(),
+            directions,
+        }
+    }
+
+    fn nearest(&self, x: &Point3<f64>) -> Direction {
+        let squares = self.points.iter().map(|f| (f - x).norm_squared());
+        let best = squares.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+        best.map_or(self.directions[0], |(k, _)| self.directions[k])
+    }
+}
+
+/// The place of least distance that Gauss–Newton steps on the sphere find from a direction.
+fn search(surface: &impl Surface, x: &Point3<f64>, start: Direction) -> (Direction, f64) {
     let mut p = start;
     let mut here = surface.differential(&p);
     let mut distance = (x - here.position).norm();
@@ -88,5 +120,5 @@ fn search(surface: &impl Surface, x: &Point3<f64>, start: Direction) -> f64 {
             break;
         }
     }
-    distance
+    (p, distance)
 }

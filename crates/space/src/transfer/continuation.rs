@@ -1,7 +1,7 @@
 //! Our transfer: a continuation along γ with adaptive steps and restarts.
 
 use grasp::QualityError;
-use shape::RadialField;
+use shape::AnyField;
 use sph::Direction;
 use sph::direction::angle;
 
@@ -141,7 +141,7 @@ impl Continuation {
         constraints: &Constraints,
         trace: impl FnMut(f64, &Step),
     ) -> Result<Transferred, TransferError> {
-        let quality_on = |t: f64, station: &RadialField| transfer.objective(t, station);
+        let quality_on = |t: f64, station: &AnyField| transfer.objective(t, station);
         self.carry_inside(transfer, directions, constraints, quality_on, trace)
     }
 
@@ -151,23 +151,23 @@ impl Continuation {
     ///
     /// # Errors
     /// The shapes cannot be combined, or a quality cannot be computed.
-    pub fn carry_by<Q: Quality<RadialField>>(
+    pub fn carry_by<Q: Quality<AnyField>>(
         &self,
         transfer: &Transfer,
         directions: &[Direction],
-        quality_on: impl FnMut(f64, &RadialField) -> Q,
+        quality_on: impl FnMut(f64, &AnyField) -> Q,
         trace: impl FnMut(f64, &Step),
     ) -> Result<Transferred, TransferError> {
         let free = Constraints::default();
         self.carry_inside(transfer, directions, &free, quality_on, trace)
     }
 
-    fn carry_inside<Q: Quality<RadialField>>(
+    fn carry_inside<Q: Quality<AnyField>>(
         &self,
         transfer: &Transfer,
         directions: &[Direction],
         constraints: &Constraints,
-        quality_on: impl FnMut(f64, &RadialField) -> Q,
+        quality_on: impl FnMut(f64, &AnyField) -> Q,
         mut trace: impl FnMut(f64, &Step),
     ) -> Result<Transferred, TransferError> {
         constraints.validate()?;
@@ -211,6 +211,7 @@ impl Continuation {
             return Err(error.into());
         }
         Ok(Transferred {
+            directions: transfer.on_target(&best.directions),
             start_quality,
             quality: best.quality,
             evaluations: carrier.evaluations,
@@ -220,7 +221,6 @@ impl Continuation {
                 lost_at: carrier.lost_at,
                 climbs: carrier.climbs,
             }),
-            directions: best.directions,
         })
     }
 }
@@ -237,7 +237,7 @@ struct Carrier<'a, F> {
     constraints: &'a Constraints,
     /// Why an ascent had no start within the constraints.
     kept_out: Option<ConstraintError>,
-    target: &'a RadialField,
+    target: &'a AnyField,
     quality_on: F,
     evaluations: usize,
     /// Number of ascents on the target.
@@ -251,11 +251,11 @@ struct Standing {
     ascent: Ascent,
 }
 
-impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
+impl<Q: Quality<AnyField>, F: FnMut(f64, &AnyField) -> Q> Carrier<'_, F> {
     /// Follows the stations in order; returns the quality at the start and at the end.
     fn follow(
         &mut self,
-        stations: &[RadialField],
+        stations: &[AnyField],
         directions: &[Direction],
         trace: &mut impl FnMut(f64, &Step),
     ) -> Result<(f64, Ascent), TransferError> {
@@ -276,7 +276,7 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
         &mut self,
         here: Standing,
         t: f64,
-        station: &RadialField,
+        station: &AnyField,
         depth: usize,
         trace: &mut impl FnMut(f64, &Step),
     ) -> Result<Standing, TransferError> {
@@ -388,7 +388,7 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
     fn climb(
         &mut self,
         t: f64,
-        station: &RadialField,
+        station: &AnyField,
         from: &[Direction],
         trace: &mut impl FnMut(f64, &Step),
     ) -> Result<Ascent, QualityError> {
@@ -407,7 +407,7 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
         &mut self,
         settings: &MonotoneAscent,
         t: f64,
-        station: &RadialField,
+        station: &AnyField,
         from: &[Direction],
         trace: &mut impl FnMut(&Step),
     ) -> Result<Ascent, QualityError> {
@@ -433,11 +433,12 @@ impl<Q: Quality<RadialField>, F: FnMut(f64, &RadialField) -> Q> Carrier<'_, F> {
     }
 
     /// The constraints, with the second objective resolved on a station.
-    fn constraints_on(&self, t: f64, station: &RadialField) -> Constraints {
+    fn constraints_on(&self, t: f64, station: &AnyField) -> Constraints {
         let origin = self.transfer.origin(t);
         let second = self.constraints.closed_under.as_ref();
         Constraints {
             closed_under: second.map(|o| Objective::new(o.convention(), station, &origin)),
+            closed_holes: station.closed_patches().to_vec(),
             ..self.constraints.clone()
         }
     }

@@ -49,6 +49,7 @@ fn a_longer_climb_allocates_no_more_than_a_shorter_one() {
             axis: Vector3::z_axis(),
             least_cosine: -0.7,
         }],
+        closed_holes: Vec::new(),
         closed_under: None,
     };
     for constraints in [Constraints::default(), tight] {

@@ -1,11 +1,11 @@
 //! Ascents within limits, on M^sph, under rotation, and of other qualities.
 
-use crate::common::{between, closed_start, lumpy, paper};
+use crate::common::{between, closed_start, field, lumpy, paper};
 use grasp::{Convention, Edges};
 use nalgebra::{Point3, Rotation3, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use shape::{RadialField, RadialShape, SphericalShape, Surface};
+use shape::{AnyField, RadialShape, SphericalShape, Surface};
 use space::point::contacts_on;
 use space::quality::{LinearPieces, Quality};
 use space::sample::{ContactSampling, perturbed_spherical};
@@ -52,6 +52,7 @@ fn no_state_violates_a_limit() {
                 axis: Vector3::z_axis(),
                 least_cosine: -0.8,
             }],
+            closed_holes: Vec::new(),
             closed_under: None,
         };
         let mut qualities = Vec::new();
@@ -224,15 +225,15 @@ fn a_rotated_object_is_climbed_the_same_way() {
 #[test]
 fn a_converged_grasp_is_stationary_and_stays() {
     for seed in [0, 2, 3, 5, 9, 11] {
-        let field = RadialField::new(lumpy(seed));
-        let start = closed_start(&field, seed);
+        let surface = field(lumpy(seed));
+        let start = closed_start(&surface, seed);
         let convention = paper();
         let mut slopes = Vec::new();
         let ascent = MonotoneAscent::default()
             .climb(
-                &field,
+                &surface,
                 &start,
-                &mut objective(&convention, &field),
+                &mut objective(&convention, &surface),
                 |step| {
                     slopes.push(step.stationarity);
                 },
@@ -240,7 +241,7 @@ fn a_converged_grasp_is_stationary_and_stays() {
             .unwrap();
         assert_eq!(slopes.last(), Some(&ascent.stationarity));
         assert!(ascent.stationarity <= 0.2 * slopes[0], "{slopes:?}");
-        let transfer = between(&field, &field, &convention);
+        let transfer = between(&surface, &surface, &convention);
         let scheme = Continuation::default();
         let carried = scheme.carry(&transfer, &ascent.directions).unwrap();
         assert!(carried.quality >= ascent.quality - 1e-9);
@@ -254,11 +255,11 @@ fn a_converged_grasp_is_stationary_and_stays() {
 
 #[test]
 fn any_function_is_carried() {
-    let (from, to) = [lumpy(3), lumpy(53)].map(RadialField::new).into();
+    let (from, to) = [lumpy(3), lumpy(53)].map(field).into();
     let convention = paper();
     let transfer = between(&from, &to, &convention);
     // Smooth, positive, largest where the contacts' normals cancel.
-    let balance = |surface: &RadialField, p: &[Direction]| {
+    let balance = |surface: &AnyField, p: &[Direction]| {
         let sum: Vector3<f64> = p.iter().map(|p| surface.contact(p).1.into_inner()).sum();
         3.0 - sum.norm_squared() / 3.0
     };
@@ -290,7 +291,7 @@ fn any_function_is_carried() {
 
 #[test]
 fn transfers_keep_limits_on_the_way_and_in_recovery() {
-    let (from, to) = [lumpy(3), lumpy(53)].map(RadialField::new).into();
+    let (from, to) = [lumpy(3), lumpy(53)].map(field).into();
     let convention = paper();
     let transfer = between(&from, &to, &convention);
     let start = closed_start(&from, 3);
@@ -301,6 +302,7 @@ fn transfers_keep_limits_on_the_way_and_in_recovery() {
             axis: Vector3::z_axis(),
             least_cosine: -0.9,
         }],
+        closed_holes: Vec::new(),
         closed_under: Some(objective(&convention, &from).with_friction(0.7)),
     };
     let slippery = Convention {
@@ -356,7 +358,7 @@ fn transfers_keep_limits_on_the_way_and_in_recovery() {
 fn an_open_end_says_why() {
     // A tiny friction leaves nothing closed on a ball with three contacts near one point.
     let (from, to) = [0.03, 0.04]
-        .map(|r| RadialField::new(RadialShape::sphere(4, r).unwrap()))
+        .map(|r| field(RadialShape::sphere(4, r).unwrap()))
         .into();
     let convention = Convention {
         friction: 1e-6,

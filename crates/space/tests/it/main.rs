@@ -3,6 +3,7 @@
 mod allocation;
 mod ascent;
 mod common;
+mod maps;
 mod monotone;
 mod pairs;
 mod paper_schemes;

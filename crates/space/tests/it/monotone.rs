@@ -1,12 +1,12 @@
 //! Our ascent: monotone, without coordinate singularities, and better than the fixed step.
 
-use crate::common::{between, closed_start, lumpy, paper};
+use crate::common::{between, closed_start, field, lumpy, paper};
 use grasp::{Convention, Edges, FrameRule, Gradient};
 use nalgebra::{Point3, Vector3};
 use proptest::prelude::*;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use shape::{RadialField, Surface};
+use shape::Surface;
 use space::point::contacts_on;
 use space::sample::uniform_direction;
 use space::{MonotoneAscent, Objective, PaperAscent};
@@ -135,9 +135,9 @@ fn the_gradient_by_contacts_agrees_with_differences_also_at_the_poles() {
 fn our_transfer_is_never_below_the_naive_one() {
     let convention = paper();
     for seed in 0..6 {
-        let (from, to) = [lumpy(seed), lumpy(seed + 50)].map(RadialField::new).into();
+        let (from, to) = [lumpy(seed), lumpy(seed + 50)].map(field).into();
         let transfer = between(&from, &to, &convention);
-        let start = closed_start(from.shape(), seed);
+        let start = closed_start(&from, seed);
         let scheme = space::Continuation::default();
         let arrived = scheme.carry(&transfer, &start).unwrap();
         let naive = transfer.naive(&start).unwrap();

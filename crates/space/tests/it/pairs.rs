@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use grasp::Convention;
 use nalgebra::{Point3, Vector3};
-use shape::RadialField;
+use shape::AnyField;
 use space::{Continuation, Objective, PaperAscent, PaperTransfer, Transfer, TransferEnd};
 
-use crate::common::{between, closed_start, lumpy, paper};
+use crate::common::{between, closed_start, field, lumpy, paper};
 
 /// Two objects whose clouds stood in different places of their frames.
-fn far_apart(from: &RadialField, to: &RadialField, rule: &Convention) -> [(f64, f64, f64); 3] {
+fn far_apart(from: &AnyField, to: &AnyField, rule: &Convention) -> [(f64, f64, f64); 3] {
     let origins = [Point3::new(-0.5, 0.1, 0.0), Point3::new(0.02, 0.0, 0.3)];
     let [at, to_end] =
         [(from, origins[0]), (to, origins[1])].map(|(surface, object_origin)| TransferEnd {
@@ -48,7 +48,7 @@ fn far_apart(from: &RadialField, to: &RadialField, rule: &Convention) -> [(f64, 
 
 #[test]
 fn a_source_is_measured_about_its_own_origin() {
-    let (from, to) = [lumpy(3), lumpy(53)].map(RadialField::new).into();
+    let (from, to) = [lumpy(3), lumpy(53)].map(field).into();
     for named in [
         Convention::frogger(),
         Convention::openrave(),
@@ -71,8 +71,8 @@ fn a_source_is_measured_about_its_own_origin() {
 
 #[test]
 fn a_rule_is_resolved_on_each_object() {
-    let small = RadialField::new(lumpy(3));
-    let large = RadialField::new(shape::algebra::cone(&[3.0], &[&lumpy(53)]).unwrap());
+    let small = field(lumpy(3));
+    let large = field(shape::algebra::cone(&[3.0], &[&lumpy(53)]).unwrap());
     for (expected, start, _) in far_apart(&small, &large, &Convention::graspit()) {
         assert!(expected > 0.0);
         assert!(
@@ -84,7 +84,7 @@ fn a_rule_is_resolved_on_each_object() {
 
 #[test]
 fn stations_are_made_once_per_pair() {
-    let (from, to) = [lumpy(1), lumpy(2)].map(RadialField::new).into();
+    let (from, to) = [lumpy(1), lumpy(2)].map(field).into();
     let convention = paper();
     let transfer = between(&from, &to, &convention);
     let scheme = Continuation::default();
@@ -101,7 +101,7 @@ fn stations_are_made_once_per_pair() {
 fn an_open_start_is_content_with_what_its_convention_calls_stable() {
     // With a torque length in metres a good grasp has a hundredth of its quality in centimetres.
     // The ascent must not take it for a poor one and restart.
-    let surface = RadialField::new(lumpy(7));
+    let surface = field(lumpy(7));
     let p = sph::Direction::new_normalize(Vector3::new(1.0, 0.3, 0.2));
     let start = [0.0, 0.3, 0.6]
         .map(|y| sph::direction::retract(&p, &Vector3::new(0.0, y, -y)))

@@ -2,12 +2,12 @@
 
 use grasp::Convention;
 use nalgebra::{Point3, Vector3};
-use shape::{RadialField, RadialShape};
+use shape::RadialShape;
 use space::{Objective, PaperAscent, PaperTransfer};
 use sph::direction::{angle, retract};
 use sph::{Coefficients, Direction, SphericalCoords};
 
-use crate::common::between;
+use crate::common::{between, field};
 
 const ASCENT: PaperAscent = PaperAscent {
     steps: 100,
@@ -88,7 +88,7 @@ fn an_open_grasp_stays_where_it_is() {
 
 #[test]
 fn a_transfer_visits_every_station_and_ends_on_the_target() {
-    let (from, to) = [egg(0.0), egg(0.025)].map(RadialField::new).into();
+    let (from, to) = [egg(0.0), egg(0.025)].map(field).into();
     let convention = paper();
     let transfer = between(&from, &to, &convention);
     let scheme = PaperTransfer {
@@ -100,13 +100,7 @@ fn a_transfer_visits_every_station_and_ends_on_the_target() {
     };
     let stations = transfer.stations(scheme.intervals).unwrap();
     assert_eq!(stations.len(), 11);
-    assert!(
-        stations[10]
-            .shape()
-            .coefficients()
-            .distance(to.shape().coefficients())
-            <= 1e-16
-    );
+    assert!(space::distance_of(&stations[10], &to) <= 1e-16);
     let start = around_the_waist();
     let mut parameters = Vec::new();
     let arrived = scheme

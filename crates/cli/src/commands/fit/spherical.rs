@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use moduli::SphericalObject;
+use moduli::Object;
 use serde::Serialize;
 use shape::io::Geometry;
 use shape::{FitSettings, PointCloud, fit_spherical};
@@ -56,10 +56,11 @@ pub(super) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> 
     let fit = fit_spherical(&directions, &cloud, &settings)
         .map_err(|e| Failure::refused(format!("{}: {e}", path.display())))?;
     let (max_abs, condition) = (fit.max_abs, fit.condition);
-    let object = SphericalObject::from_fit(&input::stem(path), fit, count);
+    let area_element = fit.shape.immersion().lower;
+    let object = Object::from_spherical_fit(&input::stem(path), fit, count);
     let seconds = start.elapsed().as_secs_f64();
     if let Some(target) = &options.output {
-        let bytes = object.to_record().to_bytes();
+        let bytes = object.to_shape_file();
         output::write_file(target, &bytes.map_err(|e| Failure::other(e.to_string()))?)?;
     }
     let line = SphericalLine {
@@ -67,13 +68,13 @@ pub(super) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> 
         points: count,
         model: "spherical",
         degree: object.shape().degree(),
-        lambda: object.lambda(),
-        rms_m: object.rms(),
+        lambda: object.report().lambda_xyz.unwrap_or_default(),
+        rms_m: object.report().rms,
         max_abs_m: max_abs,
         // A map that is not proved an immersion is refused by the fit.
         in_m_sph: true,
         embedding: "immersion",
-        area_element_certified_m2: object.shape().immersion().lower,
+        area_element_certified_m2: area_element,
         condition,
         centre_m: object.frame().centre_in_cloud().into(),
         seconds,

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use moduli::SphericalObject;
+use moduli::Object;
 use serde::Serialize;
 use shape::{
     Embedding, SphericalCloudError, SphericalCloudFit, SphericalSettings, Surface,
@@ -92,21 +92,22 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<WrappedLine, 
         output::warn(format!("{}: {note}", path.display()));
     }
     warnings.extend(notes);
-    let object = SphericalObject::from_cloud_fit(&input::stem(path), fit);
+    let area_element = fit.shape.immersion().lower;
+    let object = Object::from_spherical_cloud_fit(&input::stem(path), fit);
     let seconds = start.elapsed().as_secs_f64();
     if let Some(target) = target(path, options) {
-        let bytes = object.to_record().to_bytes();
+        let bytes = object.to_shape_file();
         output::write_file(&target, &bytes.map_err(|e| Failure::other(e.to_string()))?)?;
     }
-    let shape = object.shape();
+    let (shape, report) = (object.shape(), object.report());
     Ok(WrappedLine {
         cloud: path.display().to_string(),
         points,
-        points_fitted: object.points(),
+        points_fitted: report.points,
         model: "spherical",
         degree: shape.degree(),
-        lambda: object.lambda(),
-        rms_m: object.rms(),
+        lambda: report.lambda_xyz.unwrap_or_default(),
+        rms_m: report.rms,
         max_abs_m,
         noise_m: acceptance.noise_m,
         unexplained_share: acceptance.unexplained_share,
@@ -114,7 +115,7 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<WrappedLine, 
         // A map that is not proved an immersion is refused by the fit.
         in_m_sph: true,
         embedding,
-        area_element_certified_m2: shape.immersion().lower,
+        area_element_certified_m2: area_element,
         volume_m3: shape.mass_properties().volume,
         closed_holes,
         hidden,

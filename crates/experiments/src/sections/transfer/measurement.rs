@@ -125,7 +125,9 @@ pub(super) fn drawn(
     let stations = shapes
         .iter()
         .zip(ends)
-        .map(|(surface, (_, contacts, quality))| (surface.shape().clone(), contacts, quality))
+        .filter_map(|(surface, (_, contacts, quality))| {
+            Some((surface.radial()?.shape().clone(), contacts, quality))
+        })
         .collect();
     Ok(Some(DrawnTransfer {
         title: format!("{} → {}", from.id(), to.id()),

@@ -4,7 +4,7 @@ use grasp::Convention;
 use nalgebra::Point3;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use shape::{RadialField, RadialShape, Surface};
+use shape::{AnyField, RadialField, RadialShape, Surface};
 use space::sample::{perturbed, uniform_direction};
 use space::{Objective, Transfer, TransferEnd};
 use sph::{Coefficients, Direction};
@@ -18,6 +18,11 @@ pub(crate) fn lumpy(seed: u64) -> RadialShape {
             return point.surface;
         }
     }
+}
+
+/// A radial surface prepared for ascents and transfers.
+pub(crate) fn field(shape: RadialShape) -> AnyField {
+    RadialField::new(shape).into()
 }
 
 /// The paper's convention.
@@ -39,8 +44,8 @@ pub(crate) fn closed_start(surface: &impl Surface, seed: u64) -> Vec<Direction> 
 
 /// A pair of objects, each with the mean of its cloud at the origin of its cloud's frame.
 pub(crate) fn between<'a>(
-    from: &'a RadialField,
-    to: &'a RadialField,
+    from: &'a AnyField,
+    to: &'a AnyField,
     convention: &'a Convention,
 ) -> Transfer<'a> {
     let end = |surface| TransferEnd {
