@@ -1,7 +1,9 @@
 //! Quality metrics of one grasp: size, isotropy and robustness of its set of wrenches.
 
+use grasp::hull::HullError;
 use grasp::{
-    Contact, Convention, Edges, Epsilon, GraspModel, Resistance, Workspace, Wrench, WrenchError,
+    Contact, Convention, Edges, Epsilon, GraspModel, QualityError, Resistance, Workspace, Wrench,
+    WrenchError,
 };
 use nalgebra::Point3;
 
@@ -22,7 +24,7 @@ pub struct Metrics {
     /// proved interval (Ferrari and Canny 1992).
     pub epsilon: Epsilon,
     /// Volume of the hull of the wrenches, in the sixth power of the wrench unit; `None` for round
-    /// cones, whose hull is not a polytope.
+    /// cones, whose hull is not a polytope, and for hulls that are given up after two million facets.
     pub volume: Option<f64>,
     /// Epsilon quality when each contact force is bounded by itself (the L∞ norm of the forces)
     /// instead of their sum.
@@ -79,7 +81,7 @@ impl Metrics {
         let epsilon = grasp::epsilon(model, &mut workspace)?;
         Ok(Self {
             epsilon,
-            volume: polygonal.then(|| grasp::volume(model)).transpose()?,
+            volume: if polygonal { volume(model)? } else { None },
             linf: grasp::epsilon_linf(model, &mut workspace)?.quality,
             min_weight: if polygonal {
                 grasp::min_weight(model)?
@@ -128,6 +130,14 @@ impl Measure<'_> {
     pub fn resist(&self, grasp: &Grasp, external: &Wrench) -> Result<Resistance, Error> {
         let resistance = self.with_model(grasp.contacts(), |model| grasp::resist(model, external));
         Ok(resistance?)
+    }
+}
+
+/// The volume of the hull, unless it has too many facets.
+fn volume(model: &GraspModel<'_>) -> Result<Option<f64>, QualityError> {
+    match grasp::volume(model) {
+        Err(QualityError::Hull(HullError::TooLarge { .. })) => Ok(None),
+        found => found.map(Some),
     }
 }
 

@@ -114,3 +114,22 @@ fn a_file_is_measured_under_its_own_convention() {
     ]);
     assert_eq!(other["convention"], "dexnet");
 }
+
+/// The edges of many contacts on one ring lie in common planes, on which the full hull does not end.
+#[test]
+fn thirty_contacts_have_all_metrics_but_perhaps_the_volume() {
+    let folder = TempDir::new().unwrap();
+    let around = |scale: f64| {
+        (0..30).flat_map(move |i| {
+            let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 30.0).sin_cos();
+            [scale * cos, scale * sin, 0.0]
+        })
+    };
+    let cells = around(0.05).chain(around(-1.0)).chain([0.0; 3]);
+    let cells: Vec<String> = cells.map(|x| x.to_string()).collect();
+    std::fs::write(folder.path().join("g.csv"), cells.join(",")).unwrap();
+    let said = stdout(&moduli(folder.path(), &["quality", "g.csv", "--all", "--json"]));
+    let line: serde_json::Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(line["closed"], 1);
+    assert!(line["rows"][0][4].as_f64().unwrap() > line["mean"].as_f64().unwrap());
+}

@@ -9,6 +9,10 @@ use super::support::{PointList, Support};
 use crate::wrench::Wrench;
 use thiserror::Error;
 
+/// Facets made after which a hull is given up, about a second. Many points that are nearly on common planes
+/// come near it.
+const MOST_FACETS: usize = 2_000_000;
+
 /// A simplicial facet: six vertices and the hyperplane normal·x = offset that supports the hull.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facet {
@@ -34,6 +38,9 @@ impl ConvexHull {
     /// The hull of points in general or special position; repeated points are harmless.
     ///
     /// Cost: about 0.1 µs per facet made, and one pass over the points per facet.
+    ///
+    /// # Errors
+    /// A point is not finite, the points lie in a hyperplane, or the hull is too large.
     pub fn new(points: &[Wrench]) -> Result<Self, HullError> {
         if let Some(index) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
             return Err(HullError::NotFinite { index });
@@ -100,6 +107,9 @@ fn exhaust(mut polytope: Polytope, points: &[V6], tolerance: f64) -> Result<Poly
                 limit: MAX_VERTICES,
             });
         }
+        if polytope.created > MOST_FACETS {
+            return Err(HullError::TooLarge { limit: MOST_FACETS });
+        }
         if polytope.insert(&point, tag, facet, tolerance) {
             waiting.extend_from_slice(&polytope.fresh);
         }
@@ -144,6 +154,12 @@ pub enum HullError {
     #[error("the hull has more than {limit} vertices")]
     TooMany {
         /// The most vertices that it can hold.
+        limit: usize,
+    },
+    /// More work than the hull may cost.
+    #[error("the hull was given up after {limit} facets")]
+    TooLarge {
+        /// The most facets that are made.
         limit: usize,
     },
 }
