@@ -24,7 +24,7 @@ pub struct Metrics {
     /// proved interval (Ferrari and Canny 1992).
     pub epsilon: Epsilon,
     /// Volume of the hull of the wrenches, in the sixth power of the wrench unit; `None` for round
-    /// cones, whose hull is not a polytope, and for hulls that are given up after two million facets.
+    /// cones, whose hull is not a polytope, and for hulls that are too large or that rounding does not let end.
     pub volume: Option<f64>,
     /// Epsilon quality when each contact force is bounded by itself (the L∞ norm of the forces)
     /// instead of their sum.

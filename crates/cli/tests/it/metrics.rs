@@ -128,7 +128,10 @@ fn thirty_contacts_have_all_metrics_but_perhaps_the_volume() {
     let cells = around(0.05).chain(around(-1.0)).chain([0.0; 3]);
     let cells: Vec<String> = cells.map(|x| x.to_string()).collect();
     std::fs::write(folder.path().join("g.csv"), cells.join(",")).unwrap();
-    let said = stdout(&moduli(folder.path(), &["quality", "g.csv", "--all", "--json"]));
+    let said = stdout(&moduli(
+        folder.path(),
+        &["quality", "g.csv", "--all", "--json"],
+    ));
     let line: serde_json::Value = serde_json::from_str(&said).unwrap();
     assert_eq!(line["closed"], 1);
     assert!(line["rows"][0][4].as_f64().unwrap() > line["mean"].as_f64().unwrap());

@@ -9,9 +9,11 @@ use super::support::{PointList, Support};
 use crate::wrench::Wrench;
 use thiserror::Error;
 
-/// Facets made after which a hull is given up, about a second. Many points that are nearly on common planes
-/// come near it.
+/// Facets made after which a hull is given up.
 const MOST_FACETS: usize = 2_000_000;
+/// Points added per point of the list after which a hull is given up: where many points are nearly on
+/// common planes, rounding may take and add the same ones in turn.
+const MOST_ADDED: usize = 2;
 
 /// A simplicial facet: six vertices and the hyperplane normal·x = offset that supports the hull.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,6 +92,7 @@ impl ConvexHull {
 fn exhaust(mut polytope: Polytope, points: &[V6], tolerance: f64) -> Result<Polytope, HullError> {
     let mut source = PointList(points);
     let mut waiting: Vec<u32> = polytope.fresh.clone();
+    let mut added = 0;
     while let Some(facet) = waiting.pop() {
         let facet = facet as usize;
         // A slot may have been freed, or taken by a later facet that waits on its own.
@@ -107,8 +110,11 @@ fn exhaust(mut polytope: Polytope, points: &[V6], tolerance: f64) -> Result<Poly
                 limit: MAX_VERTICES,
             });
         }
-        if polytope.created > MOST_FACETS {
-            return Err(HullError::TooLarge { limit: MOST_FACETS });
+        added += 1;
+        if polytope.created > MOST_FACETS || added > MOST_ADDED * points.len() {
+            return Err(HullError::TooLarge {
+                facets: polytope.created,
+            });
         }
         if polytope.insert(&point, tag, facet, tolerance) {
             waiting.extend_from_slice(&polytope.fresh);
@@ -157,10 +163,10 @@ pub enum HullError {
         limit: usize,
     },
     /// More work than the hull may cost.
-    #[error("the hull was given up after {limit} facets")]
+    #[error("the hull was given up after {facets} facets")]
     TooLarge {
-        /// The most facets that are made.
-        limit: usize,
+        /// The facets that were made.
+        facets: usize,
     },
 }
 
