@@ -1,7 +1,8 @@
-//! What becomes of 1,400 poses of the SDH on each object, and how long they take on one thread.
+//! What becomes of 1,400 poses of a hand on each object, and how long they take on one thread.
 //!
-//! `cargo run --release -p moduli-hand --example hand_poses -- [scan.ply …]`; without scans, on
-//! the twelve objects of the built-in library.
+//! `RAYON_NUM_THREADS=1 cargo run --release -p moduli-hand --example hand_poses -- [HAND] [scan.ply …]`:
+//! HAND is a built-in hand, the SDH by default. Scans stand on the lowest point along z; without scans
+//! the objects are the twelve of the built-in library, which stand on nothing.
 #![allow(clippy::print_stdout)]
 
 use std::error::Error;
@@ -9,13 +10,14 @@ use std::time::Instant;
 
 use grasp::Convention;
 use hand::{
-    ClosingRules, CollisionObject, Hand, PoseSampling, SynthesisParams, schunk_sdh, synthesize,
+    ClosingRules, CollisionObject, Hand, PoseSampling, Rejection, SynthesisParams, schunk_sdh,
+    synthesize,
 };
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use record::LibraryRecord;
-use shape::{FitSettings, PointCloud, RadialShape};
+use shape::{FitSettings, PointCloud, RadialShape, Support};
 use space::Objective;
 use sph::Coefficients;
 
@@ -23,17 +25,25 @@ const LIBRARY: &[u8] = fixtures::LIBRARY;
 const POSES: usize = 1400;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let hand = schunk_sdh()?;
+    let mut scans: Vec<String> = std::env::args().skip(1).collect();
+    let named = scans.first().and_then(|name| Hand::built_in(name));
+    let hand = match named {
+        Some(hand) => {
+            scans.remove(0);
+            hand?
+        }
+        None => schunk_sdh()?,
+    };
     let convention = Convention::named("paper")?;
     println!(
-        "object                      stable unstable | base near, starts in, part near, tip missed, parts near, no contact | seconds"
+        "object                      stable unstable | {} | seconds",
+        Rejection::REASONS.join(", ")
     );
-    let scans: Vec<String> = std::env::args().skip(1).collect();
     if scans.is_empty() {
         for entry in &LibraryRecord::from_bytes(LIBRARY)?.entries {
             let name = format!("{} {}", entry.id, entry.name);
             let beta = Coefficients::new(entry.shape.coefficients.clone())?;
-            row(&name, &RadialShape::new(beta)?, &hand, &convention)?;
+            row(&name, &RadialShape::new(beta)?, None, &hand, &convention)?;
         }
     }
     for path in &scans {
@@ -44,8 +54,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         };
         let stem = std::path::Path::new(path).file_stem().unwrap_or_default();
         let name = stem.to_string_lossy();
-        match shape::fit::fit(&PointCloud::new(points.points)?, &settings) {
-            Ok(fit) => row(&name, &fit.shape, &hand, &convention)?,
+        let cloud = PointCloud::new(points.points)?;
+        match shape::fit::fit(&cloud, &settings) {
+            Ok(fit) => {
+                let lowest = cloud.points().iter().map(|p| p.z - fit.centre_in_cloud.z);
+                let support = Support {
+                    normal: Vector3::z_axis(),
+                    offset_m: lowest.fold(f64::INFINITY, f64::min),
+                };
+                row(&name, &fit.shape, Some(support), &hand, &convention)?;
+            }
             Err(error) => println!("{name:27} refused: {error}"),
         }
     }
@@ -55,15 +73,23 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn row(
     name: &str,
     surface: &RadialShape,
+    support: Option<Support>,
     hand: &Hand,
     convention: &Convention,
 ) -> Result<(), Box<dyn Error>> {
+    let rules = ClosingRules {
+        support,
+        ..ClosingRules::default()
+    };
     let objective = Objective::new(convention, surface, &Point3::origin());
     let params = SynthesisParams {
         tips: hand.tip_model(),
         poses: POSES,
-        sampling: PoseSampling::of_hand(hand),
-        rules: ClosingRules::default(),
+        sampling: PoseSampling {
+            support: support.map(|s| (s, rules.support_clearance)),
+            ..PoseSampling::of_hand(hand)
+        },
+        rules,
         convention: objective.convention().clone(),
         centre: objective.centre(),
         least_quality: 0.01,

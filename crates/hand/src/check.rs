@@ -9,7 +9,7 @@ use nalgebra::{Isometry3, Point3, Vector3};
 use shape::TriangleMesh;
 
 use crate::collision::all_close_pairs;
-use crate::hand::{Finger, Hand, Preshape};
+use crate::hand::{Finger, Hand, Preshape, TIP_EXCESS};
 use crate::hand_spec::exempt_pairs_text;
 use crate::kinematics::KinematicsError;
 use crate::model::Geometry;
@@ -235,6 +235,17 @@ fn geometry(hand: &Hand, findings: &mut Vec<Finding>) {
                 link.name
             );
             add(findings, Severity::Note, text);
+        }
+        let index = hand.model().link_index(&link.name);
+        let is_tip = |l: usize| hand.fingers().iter().any(|f| f.tip_links.contains(&l));
+        let excess = shape.pieces.iter().map(|p| p.excess()).fold(0.0, f64::max);
+        if index.is_some_and(is_tip) && excess > TIP_EXCESS {
+            let text = format!(
+                "tip '{}': the hull that stands in for its mesh may be {:.1} mm larger than the mesh, so the real tip stops that far from the object; give it a mesh of fewer vertices, or boxes and cylinders",
+                link.name,
+                1e3 * excess
+            );
+            add(findings, Severity::Warning, text);
         }
         let carries = hand
             .model()

@@ -3,6 +3,7 @@
 mod above;
 mod around;
 mod group;
+mod touch;
 mod wrapping;
 
 use nalgebra::Isometry3;
@@ -11,6 +12,7 @@ use crate::collision::{CollisionObject, Precision, first_close_pair};
 use crate::hand::{Finger, FingerGroup, Hand};
 use group::close_group;
 use shape::Support;
+pub use touch::touching_joints;
 use wrapping::wrap_group;
 
 /// A finger has come to rest if a step closes it by less than this, in units of closing.

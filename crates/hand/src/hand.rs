@@ -15,9 +15,10 @@ use crate::model::HandModel;
 use crate::tip_model::TipModel;
 pub use groups::FingerGroup;
 pub use jaws::Jaws;
-pub(crate) use resolve::link_shapes;
+pub(crate) use resolve::{TIP_EXCESS, link_shapes};
 use resolve::{
-    approach, fingers, least_fingers, pad_radius, palm, preshapes, separate, standoff, tested_pairs,
+    approach, fingers, least_fingers, pad_radius, palm, preshapes, separate, standoff,
+    tested_pairs, tighten_tips,
 };
 
 /// Fingers are opened in steps of this, up to the most, units of closing.
@@ -196,8 +197,9 @@ impl Hand {
     /// below it, and the palm frame is the frame of that link.
     pub fn new(model: HandModel, spec: &HandSpec) -> Result<Self, HandError> {
         let model = palm(&model, spec)?;
-        let shapes = link_shapes(&model)?;
+        let mut shapes = link_shapes(&model)?;
         let mut fingers = fingers(&model, &shapes, &spec.finger)?;
+        tighten_tips(&model, &mut shapes, &fingers)?;
         let groups = groups::groups(&model, &shapes, spec, &mut fingers)?;
         separate(&model, &fingers)?;
         let preshapes = preshapes(&model, &spec.preshape)?;

@@ -43,7 +43,7 @@ mod xml;
 pub use alignment::carried_pose;
 pub use built_in::{LoadError, SDH_SPEC, SDH_URDF, schunk_sdh};
 pub use check::{Finding, Severity, check_hand, hand_meshes};
-pub use closing::{ClosedHand, ClosingRules, Rejection, close_hand};
+pub use closing::{ClosedHand, ClosingRules, Rejection, close_hand, touching_joints};
 pub use collision::{
     CollisionObject, Gap, GeometryError, ObjectError, PointTree, Precision, Surroundings,
 };

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hand::{Drive, Hand, Joint};
+use hand::{CollisionObject, Drive, Hand, Joint, touching_joints};
 use record::grasps::ObjectRecord;
 use record::grasps::{
     AssessmentRecord, ContactRecord, ConventionRecord, ExecutionRecord, GRASPS_VERSION, HandRecord,
@@ -19,10 +19,12 @@ use crate::records::{contact_model_record, convention_record, joint_record, supp
 impl Measure<'_> {
     /// The file of ranked grasps of a hand; ranks follow the order of the list.
     pub fn grasps_file(&self, hand: &Hand, ranked: &[Grasp]) -> GraspsFile {
+        // A surface that hands cannot meet has no grasps with a hand.
+        let collision = CollisionObject::new(self.object().field()).ok();
         let record = |(i, grasp): (usize, &Grasp)| {
             let hand = grasp
                 .hand()
-                .map(|placement| hand_record(grasp, placement, hand));
+                .map(|placement| hand_record(grasp, placement, hand, collision.as_ref()));
             grasp_record(i + 1, grasp, source_record(grasp.source()), hand)
         };
         self.for_hand(hand)
@@ -123,7 +125,16 @@ pub fn source_record(source: &Source) -> SourceRecord {
     }
 }
 
-fn hand_record(grasp: &Grasp, placement: &HandPlacement, hand: &Hand) -> HandRecord {
+fn hand_record(
+    grasp: &Grasp,
+    placement: &HandPlacement,
+    hand: &Hand,
+    object: Option<&CollisionObject<'_>>,
+) -> HandRecord {
+    let touching = object.map_or_else(
+        || placement.joints.clone(),
+        |o| touching_joints(o, hand, &placement.centred_from_palm, &placement.joints),
+    );
     let pose = grasp.palm_in_cloud().unwrap_or(placement.centred_from_palm);
     HandRecord {
         name: hand.name().to_owned(),
@@ -133,7 +144,7 @@ fn hand_record(grasp: &Grasp, placement: &HandPlacement, hand: &Hand) -> HandRec
         pregrasp_joints: by_name(hand, &placement.pregrasp_joints),
         contact_error_m: placement.contact_error,
         execution: ExecutionRecord {
-            grasp_joints: by_name(hand, &placement.joints),
+            grasp_joints: by_name(hand, &touching),
             approach_direction: Some((pose * hand.approach_axis()).into_inner().into()),
             clearance_to_support_m: placement.clearance_to_support,
             ..ExecutionRecord::default()

@@ -46,6 +46,12 @@ pub(crate) struct ConvexPiece {
 
 impl ConvexPiece {
     pub(crate) fn new(placed: &LinkGeometry) -> Result<Self, GeometryError> {
+        Self::within(placed, f64::INFINITY)
+    }
+
+    /// The piece with a hull that extends beyond its mesh by at most `excess`, metres, where the largest
+    /// number of vertices allows.
+    pub(crate) fn within(placed: &LinkGeometry, excess: f64) -> Result<Self, GeometryError> {
         let along_y =
             UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::FRAC_PI_2);
         let mut link_from_piece = placed.link_from_geometry;
@@ -76,7 +82,7 @@ impl ConvexPiece {
             }
             &Geometry::Sphere { radius } => (Form::Ball(Ball::new(radius)), radius),
             Geometry::Hull { points, .. } => {
-                let (hull, centre) = Hull::of_points(points)?;
+                let (hull, centre) = Hull::of_points(points, excess)?;
                 link_from_piece *= nalgebra::Translation3::from(centre.coords);
                 let radius = hull.radius();
                 (Form::Hull(Box::new(hull)), radius)
@@ -172,6 +178,14 @@ impl ConvexPiece {
     /// The point of the piece closest to a point outside it, both in the piece frame.
     pub(crate) fn closest_point(&self, p: &Vector3<f64>) -> Vector3<f64> {
         from_parry(self.shape().project_local_point(to_parry(p), true).point)
+    }
+
+    /// A bound on how far the piece extends beyond the geometry that it stands for, metres.
+    pub(crate) fn excess(&self) -> f64 {
+        match &self.form {
+            Form::Hull(hull) => hull.excess,
+            _ => 0.0,
+        }
     }
 
     /// How deep a point (piece frame) is below the surface of the piece; 0 outside.

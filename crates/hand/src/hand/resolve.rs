@@ -7,6 +7,9 @@ use crate::collision::{ConvexPiece, LinkShape};
 use crate::hand_spec::{FingerSpec, HandSpec, PreshapeSpec};
 use crate::model::{Drive, HandModel, JointKind};
 
+/// The hull of a tip's mesh may extend beyond the mesh by this, metres.
+pub(crate) const TIP_EXCESS: f64 = 2e-4;
+
 pub(super) fn bad_number(place: &str, value: f64, wanted: &'static str) -> HandError {
     HandError::Number {
         place: place.to_string(),
@@ -71,6 +74,24 @@ pub(crate) fn link_shapes(model: &HandModel) -> Result<Vec<LinkShape>, HandError
             Ok(LinkShape::new(pieces))
         })
         .collect()
+}
+
+/// Makes the hulls of tips tight: what touches is to be where the real tip is.
+pub(super) fn tighten_tips(
+    model: &HandModel,
+    shapes: &mut [LinkShape],
+    fingers: &[Finger],
+) -> Result<(), HandError> {
+    for &link in fingers.iter().flat_map(|f| &f.tip_links) {
+        let pieces = model.links[link].geometry.iter();
+        let tight = pieces.map(|placed| ConvexPiece::within(placed, TIP_EXCESS));
+        let tight = tight.collect::<Result<Vec<_>, _>>();
+        shapes[link] = LinkShape::new(tight.map_err(|source| HandError::Geometry {
+            link: model.links[link].name.clone(),
+            source,
+        })?);
+    }
+    Ok(())
 }
 
 pub(super) fn fingers(

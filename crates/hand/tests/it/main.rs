@@ -11,6 +11,7 @@ mod hostile_urdf;
 mod init;
 mod kinematics;
 mod reach;
+mod real_tips;
 mod shipped_specs;
 mod surroundings;
 mod synthesis;

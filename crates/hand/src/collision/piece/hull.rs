@@ -10,6 +10,8 @@ use super::{PointDistance, from_parry, to_parry};
 const LEAST_HULL_THICKNESS: f64 = 1e-6;
 /// Of more points than this only the extreme ones in this many directions are kept.
 const HULL_DIRECTIONS: usize = 96;
+/// Directions are doubled until a hull is as tight as wanted, up to this many.
+const MOST_DIRECTIONS: usize = 1536;
 /// Number of supporting planes of a hull in addition to those of its faces.
 const BOUND_DIRECTIONS: usize = 96;
 
@@ -30,12 +32,25 @@ pub(in crate::collision) struct Hull {
     faces: Vec<(Vector3<f64>, f64)>,
     /// Radius of a sphere about the origin that is inside the hull.
     inner_radius: f64,
+    /// A bound on how far the hull extends beyond that of all points, metres.
+    pub(super) excess: f64,
 }
 
 impl Hull {
-    /// The convex hull of points in a frame about a point inside it, and that point.
-    pub(super) fn of_points(points: &[Point3<f64>]) -> Result<(Self, Point3<f64>), GeometryError> {
-        hull(points).map(|(body, centre)| (Hull::new(body), centre))
+    /// The convex hull of points in a frame about a point inside it, and that point. The hull extends
+    /// beyond that of all points by at most `excess` (metres) where [`MOST_DIRECTIONS`] allow.
+    pub(super) fn of_points(
+        points: &[Point3<f64>],
+        excess: f64,
+    ) -> Result<(Self, Point3<f64>), GeometryError> {
+        let mut directions = HULL_DIRECTIONS;
+        loop {
+            let found = hull(points, directions)?;
+            if found.excess <= excess || directions >= MOST_DIRECTIONS {
+                return Ok((Hull::new(found.body, found.excess), found.centre));
+            }
+            directions *= 2;
+        }
     }
 
     /// Radius of the sphere about the origin that contains the hull.
@@ -44,7 +59,7 @@ impl Hull {
         norms.fold(0.0, f64::max)
     }
 
-    fn new(body: ConvexPolyhedron) -> Self {
+    fn new(body: ConvexPolyhedron, excess: f64) -> Self {
         // Beyond an edge the planes of its two faces give a poor bound. Planes in even directions
         // improve it.
         let around = sph::direction::even_directions(BOUND_DIRECTIONS);
@@ -62,6 +77,7 @@ impl Hull {
             } else {
                 0.0
             },
+            excess,
         }
     }
 
@@ -96,15 +112,24 @@ fn support_of(body: &ConvexPolyhedron, n: &Vector3<f64>) -> f64 {
 
 /// Checks that the vertices of a mesh span a convex hull with volume.
 pub(crate) fn check_hull(points: &[Point3<f64>]) -> Result<(), GeometryError> {
-    hull(points).map(|_| ())
+    hull(points, HULL_DIRECTIONS).map(|_| ())
 }
 
-/// A convex hull of the points, and the point inside it that is the origin of its frame.
+/// A hull that contains all points.
+struct Simplified {
+    body: ConvexPolyhedron,
+    /// The origin of its frame, inside it.
+    centre: Point3<f64>,
+    /// A bound on how far it extends beyond the hull of all points, metres.
+    excess: f64,
+}
+
+/// A convex hull of the points.
 ///
-/// Of more than [`HULL_DIRECTIONS`] points only the extreme ones in that many even directions are
+/// Of more points than `directions` only the extreme ones in that many even directions are
 /// kept, and their hull is enlarged by a few percent until it contains all points.
-fn hull(points: &[Point3<f64>]) -> Result<(ConvexPolyhedron, Point3<f64>), GeometryError> {
-    let extreme = extreme_points(points);
+fn hull(points: &[Point3<f64>], directions: usize) -> Result<Simplified, GeometryError> {
+    let extreme = extreme_points(points, directions);
     let count = extreme.len().max(1) as f64;
     let centre = Point3::from(extreme.iter().map(|p| p.coords).sum::<Vector3<f64>>() / count);
     if thickness(&extreme, &centre) < LEAST_HULL_THICKNESS {
@@ -130,14 +155,19 @@ fn hull(points: &[Point3<f64>]) -> Result<(ConvexPolyhedron, Point3<f64>), Geome
     if !scale.is_finite() {
         return Err(GeometryError::FlatHull);
     }
-    Ok((build(scale)?, centre))
+    let radius = extreme.iter().map(|p| (p - centre).norm());
+    Ok(Simplified {
+        excess: (scale - 1.0) * radius.fold(0.0, f64::max),
+        body: build(scale)?,
+        centre,
+    })
 }
 
-fn extreme_points(points: &[Point3<f64>]) -> Vec<Point3<f64>> {
-    if points.len() <= HULL_DIRECTIONS {
+fn extreme_points(points: &[Point3<f64>], directions: usize) -> Vec<Point3<f64>> {
+    if points.len() <= directions {
         return points.to_vec();
     }
-    let mut kept: Vec<usize> = sph::direction::even_directions(HULL_DIRECTIONS)
+    let mut kept: Vec<usize> = sph::direction::even_directions(directions)
         .iter()
         .filter_map(|d| {
             let height = |k: &usize| d.dot(&points[*k].coords);
