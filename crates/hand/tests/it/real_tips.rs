@@ -100,11 +100,11 @@ fn hulls_of_published_tips_are_tight() {
     }
 }
 
+/// A pose of the palm and joints.
+type Placed = (Isometry3<f64>, Vec<f64>);
+
 /// Stable grasps of the fitted scan, with the support and the points of the scan.
-fn grasps(
-    hand: &Hand,
-    cloud: &PointCloud,
-) -> (Vec<(Isometry3<f64>, Vec<f64>)>, Support, Point3<f64>) {
+fn grasps(hand: &Hand, cloud: &PointCloud) -> (Vec<Placed>, Support, Point3<f64>) {
     let settings = FitSettings {
         degree: 50,
         lambda: None,
