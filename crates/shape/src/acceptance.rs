@@ -75,23 +75,25 @@ pub enum Verdict {
 }
 
 impl Acceptance {
-    /// Measures the distances of points from a surface, both in one frame.
+    /// Measures the distances of points from a surface whose origin is at `origin` in their frame; the
+    /// axes are the same.
     ///
-    /// `starts` holds a direction per point from which the nearest place on the surface is looked for:
+    /// `start` gives a direction per point from which the nearest place on the surface is looked for:
     /// for a radial surface the direction of the point. Where that search ends too far from the point, and
-    /// where no directions are given, it begins again at the nearest of 4,000 places on the surface.
+    /// where there is no direction, it begins again at the nearest of 4,000 places on the surface.
     /// `noise` is σ of [`noise`]. Costs a few evaluations of the surface per point, on all threads of the
     /// pool; the order of the points matters only for the rounding of the sums.
     pub fn measure(
         surface: &(impl Surface + Sync),
+        origin: &Point3<f64>,
         points: &[Point3<f64>],
-        starts: Option<&[Direction]>,
+        start: impl Fn(usize) -> Option<Direction> + Sync,
         noise: f64,
     ) -> Self {
         let diameter = diameter(points);
         let tolerance =
             (DEVIATIONS * noise).clamp(LEAST_TOLERANCE * diameter, MOST_TOLERANCE * diameter);
-        let distances = distance::distances(surface, points, starts, tolerance);
+        let distances = distance::distances(surface, origin, points, start, tolerance);
         let count = points.len().max(1) as f64;
         let squares: f64 = distances.iter().map(|d| d * d).sum();
         // Written so that NaN is not explained.
@@ -119,14 +121,6 @@ impl Acceptance {
         } else {
             Verdict::Unexplained
         }
-    }
-
-    /// The same with places in a frame whose origin is at `origin` in this one.
-    pub fn moved(mut self, origin: &Vector3<f64>) -> Self {
-        if let Some(worst) = &mut self.worst {
-            worst.centre += origin;
-        }
-        self
     }
 }
 
@@ -207,10 +201,14 @@ mod tests {
             .collect()
     }
 
+    fn measured(points: &[Point3<f64>]) -> Acceptance {
+        Acceptance::measure(&ball(), &Point3::origin(), points, |_| None, noise(points))
+    }
+
     #[test]
     fn points_on_the_surface_are_explained_and_a_lid_beside_it_is_not() {
         let mut points = on_a_sphere(0.05);
-        let clean = Acceptance::measure(&ball(), &points, None, noise(&points));
+        let clean = measured(&points);
         assert!(clean.verdict() == Verdict::Explained && clean.unexplained_share == 0.0);
         assert!(
             clean.surface_rms_m <= 1e-9 && clean.noise_m <= 1e-5,
@@ -220,7 +218,7 @@ mod tests {
         for p in points.iter_mut().filter(|p| p.z > 0.045) {
             p.z += 0.02;
         }
-        let lifted = Acceptance::measure(&ball(), &points, None, noise(&points));
+        let lifted = measured(&points);
         assert!(
             (0.04..0.06).contains(&lifted.unexplained_share),
             "{lifted:?}"
@@ -242,7 +240,7 @@ mod tests {
                     .take(1)
             })
             .collect();
-        let filled = Acceptance::measure(&ball(), &points, None, noise(&points));
+        let filled = measured(&points);
         assert!(filled.unexplained_share >= 0.5, "{filled:?}");
         assert_eq!(filled.verdict(), Verdict::Unexplained);
     }

@@ -1,6 +1,7 @@
 //! From a cloud to a proved member of M^rad.
 
 use std::borrow::Cow;
+use std::time::Instant;
 
 use nalgebra::Point3;
 use sph::regression::{Gram, Penalty, RegressionError, Samples};
@@ -162,6 +163,9 @@ pub struct Fit {
     pub max_abs: f64,
     /// Condition number of the penalised regression.
     pub condition: f64,
+    /// Wall-clock time of the last regression, seconds: the normal equations, the choice of λ and their
+    /// solution, without the tests of the cloud and the proof.
+    pub regression_seconds: f64,
     /// How close the cloud is to star-shaped, and where it has holes.
     pub visibility: Visibility,
     /// Points not used, as indices into the cloud: far from the surface and from other points.
@@ -197,6 +201,7 @@ impl Fit {
             shape: RadialShape::new(heat_flow(self.shape.coefficients(), sigma))?,
             lambda: self.lambda,
             condition: self.condition,
+            seconds: self.regression_seconds,
         };
         let residuals = view.residuals(&solved.shape);
         Ok(solved.report(
@@ -291,6 +296,7 @@ struct Solved {
     shape: RadialShape,
     lambda: f64,
     condition: f64,
+    seconds: f64,
 }
 
 impl<'a> View<'a> {
@@ -336,6 +342,7 @@ impl<'a> View<'a> {
             directions: &filled.directions,
             values: &filled.radii,
         };
+        let begin = Instant::now();
         let gram = Gram::new(samples, settings.degree)?;
         let chosen = settings.lambda.is_none();
         let mut penalty = match settings.lambda {
@@ -348,6 +355,7 @@ impl<'a> View<'a> {
         let mut raises = if chosen { MAX_RAISES } else { 0 };
         loop {
             let solution = gram.solve(samples, penalty)?;
+            let seconds = begin.elapsed().as_secs_f64();
             let shape = RadialShape::new(solution.coefficients).map_err(FitError::from);
             match shape.and_then(|shape| self.not_too_far(shape, chosen)) {
                 Ok(shape) => {
@@ -355,6 +363,7 @@ impl<'a> View<'a> {
                         shape,
                         lambda: penalty.lambda,
                         condition: solution.condition,
+                        seconds,
                     });
                 }
                 Err(error) if raises == 0 => return Err(error),
@@ -428,6 +437,7 @@ impl Solved {
             rms: (squares / residuals.len() as f64).sqrt(),
             max_abs: residuals.iter().fold(0.0, |worst, e| e.abs().max(worst)),
             condition: self.condition,
+            regression_seconds: self.seconds,
             visibility,
             outliers,
         }

@@ -41,7 +41,7 @@ fn isolated(points: &[Point3<f64>], suspects: Vec<usize>) -> Vec<usize> {
     if !(reach > 0.0 && reach.is_finite()) {
         return Vec::new();
     }
-    let grid = VoxelGrid::new(points, reach);
+    let grid = VoxelGrid::near(points, reach, suspects.iter().map(|i| &points[*i]));
     // The point itself is among those within the radius.
     let alone = |i: &usize| {
         let near = grid.within(&points[*i], reach);

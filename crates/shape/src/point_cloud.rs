@@ -1,5 +1,7 @@
 //! Point clouds, and their directions and radii about a centre.
 
+use std::sync::Arc;
+
 use nalgebra::{Point3, Vector3};
 use sph::Direction;
 use sph::direction::direction_and_radius;
@@ -52,10 +54,11 @@ pub enum CloudError {
     NoExtent,
 }
 
-/// Points of an object's surface, metres, in the frame of their source. They are always finite.
+/// Points of an object's surface, metres, in the frame of their source. They are always finite. Copies
+/// share the points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointCloud {
-    points: Vec<Point3<f64>>,
+    points: Arc<Vec<Point3<f64>>>,
 }
 
 /// A cloud seen from a centre: directions on the sphere and radii.
@@ -71,8 +74,8 @@ impl PointCloud {
     /// The least number of points that bound a solid.
     pub const MIN_POINTS: usize = 4;
 
-    /// Largest coordinate, metres. Only map coordinates (northings) come near it.
-    pub const FARTHEST: f64 = 1e7;
+    /// Largest coordinate, metres.
+    pub const FARTHEST: f64 = 1e6;
 
     /// Least extent, metres.
     pub const LEAST_EXTENT: f64 = 1e-9;
@@ -105,7 +108,9 @@ impl PointCloud {
             let value = value.fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
             return Err(CloudError::TooFar { index, value });
         }
-        let cloud = Self { points };
+        let cloud = Self {
+            points: Arc::new(points),
+        };
         let extent = cloud.extent().max();
         if extent >= Self::LEAST_EXTENT {
             Ok(cloud)
@@ -125,7 +130,7 @@ impl PointCloud {
     pub fn extent(&self) -> Vector3<f64> {
         let mut low = self.points[0].coords;
         let mut high = low;
-        for p in &self.points {
+        for p in self.points.iter() {
             low = low.inf(&p.coords);
             high = high.sup(&p.coords);
         }
@@ -148,11 +153,17 @@ impl PointCloud {
     /// Directions and radii seen from a centre. A point at the centre has no direction and is
     /// omitted.
     pub fn seen_from(&self, centre: &Point3<f64>) -> RadialSamples {
-        let (directions, radii) = self
+        // Reserved at once, because a cloud may have millions of points.
+        let mut directions = Vec::with_capacity(self.points.len());
+        let mut radii = Vec::with_capacity(self.points.len());
+        for (p, r) in self
             .points
             .iter()
             .filter_map(|p| direction_and_radius(&(p - centre)))
-            .unzip();
+        {
+            directions.push(p);
+            radii.push(r);
+        }
         RadialSamples { directions, radii }
     }
 }
@@ -168,7 +179,7 @@ mod tests {
             PointCloud::new(corners.map(|c| Point3::from(c) * scale).to_vec())
         };
         assert!(cloud(5e6).is_ok());
-        for scale in [1e155, -1e155, 1.1e7] {
+        for scale in [1e155, -1e155, 1.1e6] {
             let error = cloud(scale).unwrap_err();
             assert!(matches!(error, CloudError::TooFar { index: 1, value } if value == scale));
             assert!(error.to_string().len() < 150, "{error}");

@@ -6,9 +6,11 @@ mod pieces;
 mod plane;
 mod thinning;
 
+use std::borrow::Cow;
+
 use nalgebra::{Isometry3, Point3, UnitVector3, Vector3};
 
-use crate::voxel_grid::spacing;
+use crate::voxel_grid::spacing_of_part;
 
 pub use thinning::distinct;
 
@@ -21,7 +23,7 @@ const MIN_PIECE: (usize, f64) = (10, 5e-4);
 /// The largest piece is the object if it has this many times the points of the next one.
 const DOMINANT: f64 = 4.0;
 /// A point given this often, and isolated, stands for "no return" of a sensor.
-const SENTINEL: usize = 3;
+const SENTINEL: u32 = 3;
 /// Pieces named in a message.
 const NAMED: usize = 8;
 
@@ -218,8 +220,13 @@ pub fn analyse(points: &[Point3<f64>], settings: &SceneSettings) -> Result<Scene
         repeated: points.len() - rows.len(),
         ..Dropped::default()
     };
-    let places: Vec<Point3<f64>> = rows.iter().map(|r| points[r.index]).collect();
-    let step = spacing(&places);
+    let places: Cow<[Point3<f64>]> = if rows.len() == points.len() {
+        Cow::Borrowed(points)
+    } else {
+        rows.iter().map(|r| points[r.index as usize]).collect()
+    };
+    // The spacing of millions of points may be finer than their noise.
+    let step = spacing_of_part(&places);
     let all: Vec<usize> = (0..places.len()).collect();
     let (mut groups, mut crumbs) = pieces::connected(&places, &all, LINK * step, MIN_PIECE);
     let mut support = None;
@@ -245,7 +252,7 @@ pub fn analyse(points: &[Point3<f64>], settings: &SceneSettings) -> Result<Scene
     }
     for i in crumbs.iter().flatten() {
         match rows[*i].count {
-            count if count >= SENTINEL => dropped.sentinels += count,
+            count if count >= SENTINEL => dropped.sentinels += count as usize,
             _ => dropped.isolated += 1,
         }
     }
@@ -255,11 +262,14 @@ pub fn analyse(points: &[Point3<f64>], settings: &SceneSettings) -> Result<Scene
     if support.is_none() && settings.support == SupportRule::Auto {
         support = Some(foot(&places, &groups[chosen], settings.up));
     }
-    let mut object: Vec<usize> = groups[chosen].iter().map(|i| rows[*i].index).collect();
+    let mut object: Vec<usize> = groups[chosen]
+        .iter()
+        .map(|i| rows[*i].index as usize)
+        .collect();
     object.sort_unstable();
     let groups = groups.iter().enumerate().filter(|(k, _)| *k != chosen);
     let mut others: Vec<usize> = groups
-        .flat_map(|(_, group)| group.iter().map(|i| rows[*i].index))
+        .flat_map(|(_, group)| group.iter().map(|i| rows[*i].index as usize))
         .collect();
     others.sort_unstable();
     Ok(Scene {
@@ -274,7 +284,10 @@ pub fn analyse(points: &[Point3<f64>], settings: &SceneSettings) -> Result<Scene
 /// Rows counted both as repeated and as sentinels.
 fn sentinel_repeats(crumbs: &[Vec<usize>], rows: &[thinning::Distinct]) -> usize {
     let counts = crumbs.iter().flatten().map(|i| rows[*i].count);
-    counts.filter(|c| *c >= SENTINEL).map(|c| c - 1).sum()
+    counts
+        .filter(|c| *c >= SENTINEL)
+        .map(|c| c as usize - 1)
+        .sum()
 }
 
 /// The plane through the lowest point.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
 use rayon::prelude::*;
 use sph::regression::RegressionError;
 use sph::{Coefficients, Direction};
@@ -300,15 +300,12 @@ impl Work<'_> {
         indices: &[usize],
         directions: &[Direction],
     ) -> Acceptance {
-        let points: Vec<Point3<f64>> = self.points.iter().map(|x| x - self.centre.coords).collect();
-        // The search from any other start ends too far away, and a second one finds the nearest place.
-        let mut starts = vec![Vector3::z_axis(); points.len()];
+        let mut starts = vec![None; self.points.len()];
         for (i, p) in indices.iter().zip(directions) {
-            starts[*i] = *p;
+            starts[*i] = Some(*p);
         }
-        let field = SphericalField::new(shape);
-        Acceptance::measure(&field, &points, Some(&starts), noise(&points))
-            .moved(&self.centre.coords)
+        let (field, noise) = (SphericalField::new(shape), noise(self.points));
+        Acceptance::measure(&field, &self.centre, self.points, |i| starts[i], noise)
     }
 
     /// The fit, if it explains its points or need not.

@@ -1,6 +1,6 @@
 //! Points by the cube they lie in, for searches of neighbours in a constant number of operations.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::hash::{BuildHasherDefault, Hasher};
 
 use nalgebra::Point3;
@@ -10,6 +10,9 @@ pub(crate) type Key = [i64; 3];
 
 /// A map from the indices of cubes.
 pub(crate) type KeyMap<T> = HashMap<Key, T, BuildHasherDefault<KeyHasher>>;
+
+/// A set of the indices of cubes.
+pub(crate) type KeySet = HashSet<Key, BuildHasherDefault<KeyHasher>>;
 
 /// A multiplicative hash of a few integers. It need not resist crafted collisions.
 #[derive(Clone, Debug, Default)]
@@ -59,6 +62,28 @@ impl<'a> VoxelGrid<'a> {
         }
     }
 
+    /// The same with only the points that [`VoxelGrid::within`] may find around some places: of millions
+    /// of points a few are kept.
+    pub(crate) fn near<'b>(
+        points: &'a [Point3<f64>],
+        side: f64,
+        places: impl Iterator<Item = &'b Point3<f64>>,
+    ) -> Self {
+        let cubes: KeySet = places.flat_map(|p| around(key(p, side))).collect();
+        let mut members: KeyMap<Vec<u32>> = KeyMap::default();
+        for (i, p) in points.iter().enumerate() {
+            let at = key(p, side);
+            if cubes.contains(&at) {
+                members.entry(at).or_default().push(i as u32);
+            }
+        }
+        Self {
+            points,
+            side,
+            members,
+        }
+    }
+
     /// A point by its index.
     pub(crate) fn point(&self, index: usize) -> &'a Point3<f64> {
         &self.points[index]
@@ -71,12 +96,9 @@ impl<'a> VoxelGrid<'a> {
         place: &Point3<f64>,
         radius: f64,
     ) -> impl Iterator<Item = (usize, f64)> {
-        let [x, y, z] = key(place, self.side);
-        let near = |k: i64| k.saturating_sub(1)..=k.saturating_add(1);
-        let keys =
-            near(x).flat_map(move |x| near(y).flat_map(move |y| near(z).map(move |z| [x, y, z])));
         let place = *place;
-        keys.filter_map(|key| self.members.get(&key))
+        around(key(&place, self.side))
+            .filter_map(|key| self.members.get(&key))
             .flatten()
             .map(move |i| {
                 (
@@ -94,6 +116,12 @@ impl<'a> VoxelGrid<'a> {
     }
 }
 
+/// A cube and the 26 cubes that touch it.
+pub(crate) fn around([x, y, z]: Key) -> impl Iterator<Item = Key> {
+    let near = |k: i64| k.saturating_sub(1)..=k.saturating_add(1);
+    near(x).flat_map(move |x| near(y).flat_map(move |y| near(z).map(move |z| [x, y, z])))
+}
+
 /// The cube of a point.
 pub(crate) fn key(p: &Point3<f64>, side: f64) -> Key {
     [p.x, p.y, p.z].map(|x| (x / side).floor() as i64)
@@ -101,14 +129,28 @@ pub(crate) fn key(p: &Point3<f64>, side: f64) -> Key {
 
 /// Points that a cube should hold for [`spacing`] to count them.
 const OCCUPANCY: (usize, usize) = (6, 20);
+/// Points of a cloud of which the spacing is measured.
+const MOST_COUNTED: usize = 200_000;
 /// Most changes of the side until it does.
 const ROUNDS: usize = 16;
 
 /// Distance between neighbours, n^{−1/2} for n points on a unit of area; 0 for points without extent.
 ///
 /// Cubes are made larger or smaller until the median point shares its cube with six to twenty; their
-/// side and that number give the density where most points are. Costs a few passes over the points.
+/// side and that number give the density where most points are. Costs a few passes over the points, or
+/// over 200,000 of them.
 pub(crate) fn spacing(points: &[Point3<f64>]) -> f64 {
+    let share = MOST_COUNTED as f64 / points.len().max(1) as f64;
+    spacing_of_part(points) * share.min(1.0).sqrt()
+}
+
+/// The same; of a cloud with more than 200,000 points the distance that so many would have.
+pub(crate) fn spacing_of_part(points: &[Point3<f64>]) -> f64 {
+    if points.len() > MOST_COUNTED {
+        let part = subset(points, MOST_COUNTED);
+        let part: Vec<Point3<f64>> = part.into_iter().map(|i| points[i]).collect();
+        return spacing_of_part(&part);
+    }
     let mut side = 3.0 * spacing_on_a_sphere(points);
     let mut count = 1;
     for _ in 0..ROUNDS {

@@ -26,6 +26,28 @@ const SECTORS: usize = 64;
 /// Least number of rows per task. A task also holds the rows that its windows cover beyond its own.
 const OWNED_ROWS: usize = 24;
 
+/// Puts items into the order of a permutation, in place: item `order[k]` comes to position k.
+fn arrange<T: Copy>(items: &mut [T], order: &[u32]) {
+    let mut done = vec![false; items.len()];
+    for start in 0..items.len() {
+        if done[start] {
+            continue;
+        }
+        let first = items[start];
+        let mut to = start;
+        loop {
+            done[to] = true;
+            let from = order[to] as usize;
+            if from == start {
+                items[to] = first;
+                break;
+            }
+            items[to] = items[from];
+            to = from;
+        }
+    }
+}
+
 /// Points of the sphere, prepared for repeated sums.
 ///
 /// Sums are accurate to about 1e-14 of the largest value, at any degree.
@@ -42,7 +64,7 @@ pub struct Scattered {
 impl Scattered {
     /// Sorts the points by tiles. At most 2³² points; linear in their number.
     pub fn new(directions: &[Direction]) -> Self {
-        let angles: Vec<[f64; 2]> = directions.par_iter().map(turns).collect();
+        let mut angles: Vec<[f64; 2]> = directions.par_iter().map(turns).collect();
         let mut starts = vec![0_usize; BANDS * SECTORS + 1];
         for t in &angles {
             starts[tile(t) + 1] += 1;
@@ -57,9 +79,9 @@ impl Scattered {
             order[*slot] = i as u32;
             *slot += 1;
         }
-        let turns = order.par_iter().map(|&i| angles[i as usize]).collect();
+        arrange(&mut angles, &order);
         Self {
-            turns,
+            turns: angles,
             order,
             bands,
         }

@@ -39,6 +39,7 @@ struct FitLine {
     scene: Option<SceneRecord>,
     warnings: Vec<String>,
     seconds: f64,
+    seconds_regression: f64,
 }
 
 pub(crate) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> {
@@ -132,6 +133,7 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Fail
         scene: report.scene.as_ref().map(scene_record),
         warnings: report.warnings,
         seconds,
+        seconds_regression: fit.regression_seconds,
     })
 }
 

@@ -1,12 +1,14 @@
 //! From the points of a scene to an object: what is the object, its surface, and whether the surface may
 //! be called that of the points.
 
+use std::borrow::Cow;
+
 use nalgebra::Point3;
 use shape::acceptance::noise;
 use shape::scene::{analyse, distinct};
 use shape::{
     Acceptance, Fit, FitError, FitSettings, PointCloud, Scene, SceneSettings, SphericalCloudFit,
-    SphericalSettings, SupportSource, Surface, Verdict, fit_spherical_cloud,
+    SphericalSettings, SupportSource, Verdict, fit_spherical_cloud,
 };
 use sph::Direction;
 
@@ -115,8 +117,8 @@ pub fn reconstruct(
     let scan = match (&fit, settings.heat) {
         (Fitted::Radial(fit), None) => inliers(fit, &cloud),
         // Heat moves the surface away from the scan, and hands with it.
-        (Fitted::Radial(_), Some(_)) => Vec::new(),
-        (Fitted::Spherical(_), _) => cloud.points().to_vec(),
+        (Fitted::Radial(_), Some(_)) => Cow::default(),
+        (Fitted::Spherical(_), _) => Cow::Borrowed(cloud.points()),
     };
     Ok(Reconstruction {
         object: object.with_surroundings(&obstacles, &scan),
@@ -244,7 +246,13 @@ pub fn object_points(
             let mut scene = analyse(points, rule)?;
             (std::mem::take(&mut scene.object), Some(scene))
         }
-        None => (distinct(points).iter().map(|row| row.index).collect(), None),
+        None => (
+            distinct(points)
+                .iter()
+                .map(|row| row.index as usize)
+                .collect(),
+            None,
+        ),
     };
     let object = if indices.len() == points.len() {
         cloud.clone()
@@ -255,35 +263,26 @@ pub fn object_points(
 }
 
 /// The points of a cloud without the outliers of its fit, unless these are many.
-fn inliers(fit: &Fit, cloud: &PointCloud) -> Vec<Point3<f64>> {
+fn inliers(fit: &Fit, cloud: &PointCloud) -> Cow<'_, [Point3<f64>]> {
     let all = cloud.points();
     let mut used = vec![true; all.len()];
     if fit.outliers.len() as f64 <= MOST_OUTLIERS * all.len() as f64 {
         fit.outliers.iter().for_each(|i| used[*i] = false);
     }
-    let used = all.iter().zip(&used).filter(|(_, used)| **used);
-    used.map(|(p, _)| *p).collect()
+    let used = || all.iter().zip(&used).filter(|(_, used)| **used);
+    // A cloud of which all points are used is not copied: it may have millions.
+    if used().count() == all.len() {
+        return Cow::Borrowed(all);
+    }
+    used().map(|(p, _)| *p).collect()
 }
 
 /// How well the surface of a fit explains its cloud.
 pub(crate) fn accepted(object: &Object, fit: &Fit, cloud: &PointCloud) -> Acceptance {
-    let centre = fit.centre_in_cloud.coords;
-    let points: Vec<Point3<f64>> = inliers(fit, cloud).iter().map(|p| p - centre).collect();
-    // A point at the centre has no direction; any start does for it.
-    let direction = |p: &Point3<f64>| {
-        Direction::try_new(p.coords, 0.0).unwrap_or_else(nalgebra::Vector3::z_axis)
-    };
-    let starts: Vec<Direction> = points.iter().map(direction).collect();
-    let measured = measure(object.field(), &points, &starts);
-    measured.moved(&centre)
-}
-
-fn measure(
-    surface: &(impl Surface + Sync),
-    points: &[Point3<f64>],
-    starts: &[Direction],
-) -> Acceptance {
-    Acceptance::measure(surface, points, Some(starts), noise(points))
+    let (centre, points) = (&fit.centre_in_cloud, inliers(fit, cloud));
+    // A point at the centre has no direction.
+    let direction = |i: usize| Direction::try_new(points[i] - centre, 0.0);
+    Acceptance::measure(object.field(), centre, &points, direction, noise(&points))
 }
 
 /// What was left out of a scene, a sentence each.

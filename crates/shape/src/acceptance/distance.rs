@@ -22,8 +22,9 @@ const SETTLED: f64 = 1e-3;
 /// beyond `tolerance` have a second one.
 pub(super) fn distances(
     surface: &(impl Surface + Sync),
+    origin: &Point3<f64>,
     points: &[Point3<f64>],
-    starts: Option<&[Direction]>,
+    start: impl Fn(usize) -> Option<Direction> + Sync,
     tolerance: f64,
 ) -> Vec<f64> {
     let places = Places::new(surface);
@@ -31,15 +32,16 @@ pub(super) fn distances(
         .par_iter()
         .enumerate()
         .map(|(i, x)| {
-            let start = starts.and_then(|s| s.get(i));
-            if let Some(p) = start {
+            let x = &(x - origin.coords);
+            let start = start(i);
+            if let Some(p) = &start {
                 // Near the surface the distance along its normal is good to second order.
                 let (f, normal) = surface.contact(p);
                 if (x - f).norm() <= tolerance {
                     return (x - f).dot(&normal).abs();
                 }
             }
-            match start.map(|p| search(surface, x, *p).1) {
+            match start.map(|p| search(surface, x, p).1) {
                 Some(distance) if distance <= tolerance => distance,
                 other => {
                     let found = search(surface, x, places.nearest(x)).1;

@@ -24,12 +24,12 @@ pub fn noise(points: &[Point3<f64>]) -> f64 {
     if !(reach > 0.0 && reach.is_finite()) {
         return 0.0;
     }
-    let grid = VoxelGrid::new(points, reach);
-    let places = subset(points, PATCHES);
+    let places: Vec<Point3<f64>> = subset(points, PATCHES).iter().map(|i| points[*i]).collect();
+    let grid = VoxelGrid::near(points, reach, places.iter());
     let deviations: Vec<f64> = places
         .par_iter()
-        .filter_map(|i| {
-            let mut near: Vec<(usize, f64)> = grid.within(&points[*i], reach).collect();
+        .filter_map(|p| {
+            let mut near: Vec<(usize, f64)> = grid.within(p, reach).collect();
             if near.len() > NEIGHBOURS {
                 near.select_nth_unstable_by(NEIGHBOURS, |a, b| a.1.total_cmp(&b.1));
                 near.truncate(NEIGHBOURS);

@@ -25,21 +25,26 @@ pub(super) fn connected(
     let side = link / CUBES as f64;
     let mut numbers: KeyMap<usize> = KeyMap::default();
     let mut cubes: Vec<Key> = Vec::new();
-    let mut inside: Vec<(usize, usize)> = Vec::with_capacity(members.len());
+    let mut inside: Vec<(u32, u32)> = Vec::with_capacity(members.len());
     for &i in members {
         let at = key(&places[i], side);
         let number = *numbers.entry(at).or_insert(cubes.len());
         if number == cubes.len() {
             cubes.push(at);
         }
-        inside.push((number, i));
+        inside.push((number as u32, i as u32));
     }
     let roots = joined(&cubes, &numbers);
     // Stable, so that the points of a cube keep their order.
     inside.sort_by_key(|(number, _)| *number);
-    let mut groups: Vec<Vec<usize>> = vec![Vec::new(); cubes.len()];
+    let root = |number: u32| roots[number as usize];
+    let mut sizes = vec![0; cubes.len()];
+    inside
+        .iter()
+        .for_each(|(number, _)| sizes[root(*number)] += 1);
+    let mut groups: Vec<Vec<usize>> = sizes.into_iter().map(Vec::with_capacity).collect();
     for (number, i) in inside {
-        groups[roots[number]].push(i);
+        groups[root(number)].push(i as usize);
     }
     groups.retain(|group| !group.is_empty());
     // Ties are broken by the lowest point along x, then y, then z, so that the result does not

@@ -14,15 +14,11 @@ fn accepted(cloud: &PointCloud, fit: &Fit) -> Acceptance {
     let mut used = vec![true; cloud.points().len()];
     fit.outliers.iter().for_each(|i| used[*i] = false);
     let points = cloud.points().iter().zip(&used).filter(|(_, used)| **used);
-    let points: Vec<Point3<f64>> = points
-        .map(|(p, _)| p - fit.centre_in_cloud.coords)
-        .collect();
-    let directions: Vec<_> = points
-        .iter()
-        .map(|p| sph::Direction::new_normalize(p.coords))
-        .collect();
+    let points: Vec<Point3<f64>> = points.map(|(p, _)| *p).collect();
+    let centre = &fit.centre_in_cloud;
     let field = RadialField::new(fit.shape.clone());
-    Acceptance::measure(&field, &points, Some(&directions), noise(&points))
+    let direction = |i: usize| Some(sph::Direction::new_normalize(points[i] - centre));
+    Acceptance::measure(&field, centre, &points, direction, noise(&points))
 }
 
 #[test]

@@ -8,6 +8,7 @@
 
 mod likelihood;
 
+use std::borrow::Cow;
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
@@ -91,18 +92,23 @@ impl Gram {
     ) -> Result<Self, RegressionError> {
         samples.check()?;
         let count = samples.values.len();
+        let points = Points::new(samples.directions, degree);
         let ones = vec![1.0; if weights.is_none() { count } else { 0 }];
         let w = weights.as_deref().unwrap_or(&ones);
         check_weights(w, count)?;
         let mean = dot(w, samples.values) / w.iter().sum::<f64>();
-        let centred: Vec<f64> = samples.values.iter().map(|f| f - mean).collect();
-        let weighted: Vec<f64> = centred.iter().zip(w).map(|(f, w)| f * w).collect();
-        let points = Points::new(samples.directions, degree);
+        let used = w.iter().filter(|&&w| w > 0.0).count();
         let density = points.moments(samples.directions, w, 2 * degree);
+        // There may be millions of samples: what is not needed again is freed.
+        drop(ones);
+        let centred: Vec<f64> = samples.values.iter().map(|f| f - mean).collect();
+        let weighted = weights.as_ref().map_or(Cow::Borrowed(&centred), |w| {
+            Cow::Owned(centred.iter().zip(w).map(|(f, w)| f * w).collect())
+        });
         let right = points.moments(samples.directions, &weighted, degree);
         Ok(Self {
             degree,
-            samples: w.iter().filter(|&&w| w > 0.0).count(),
+            samples: used,
             operator: Multiplier::new(degree, 2 * degree + 1, 4 * degree + 1, &density, |g| g),
             inverse: inverse_density(&density, degree),
             right: right.as_slice().to_vec(),
