@@ -263,7 +263,7 @@ pub fn object_points(
 }
 
 /// The points of a cloud without the outliers of its fit, unless these are many.
-fn inliers(fit: &Fit, cloud: &PointCloud) -> Cow<'_, [Point3<f64>]> {
+fn inliers<'a>(fit: &Fit, cloud: &'a PointCloud) -> Cow<'a, [Point3<f64>]> {
     let all = cloud.points();
     let mut used = vec![true; all.len()];
     if fit.outliers.len() as f64 <= MOST_OUTLIERS * all.len() as f64 {
