@@ -44,7 +44,9 @@ const WORTH_KEEPING: f64 = 0.5;
 /// Of more fingers than three, three are enough for a grasp.
 const ENOUGH_FINGERS: usize = 3;
 /// A finger has at most so many joints of its own, else it is an arm.
-const MOST_JOINTS: usize = 8;
+const MOST_JOINTS: usize = 6;
+/// A finger is at most this long, else it is an arm; metres.
+const LONGEST_FINGER: f64 = 0.4;
 
 /// A spec that a hand can be used with, and what was decided on the way.
 #[derive(Clone, Debug, PartialEq)]
@@ -143,7 +145,7 @@ pub fn propose<R: Rng + Clone>(
     let bodies = Bodies::new(&part);
     let mut fingers = hand.fingers(&bodies);
     hand.separate(&mut fingers);
-    check_fingers(&part, &fingers)?;
+    check_fingers(&hand, &fingers)?;
     let draft = Draft {
         hand: &hand,
         fingers: &fingers,
@@ -172,13 +174,17 @@ fn names(links: &[Link]) -> String {
     names.join(", ")
 }
 
-fn check_fingers(model: &HandModel, fingers: &[Finger]) -> Result<(), InitError> {
+fn check_fingers(hand: &Resting<'_>, fingers: &[Finger]) -> Result<(), InitError> {
+    let model = hand.model;
     let palm = model.links()[0].name.clone();
     if fingers.len() < 2 {
         let found = fingers.len();
         return Err(InitError::TooFewFingers { palm, found });
     }
-    match fingers.iter().find(|f| f.path.len() > MOST_JOINTS) {
+    let is_arm = |f: &&Finger| {
+        f.path.len() > MOST_JOINTS || hand.length(f.path[0], &f.tips) > LONGEST_FINGER
+    };
+    match fingers.iter().find(is_arm) {
         Some(arm) => Err(InitError::Arms {
             palm,
             tip: model.links()[arm.tips[0]].name.clone(),

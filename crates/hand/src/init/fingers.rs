@@ -126,7 +126,21 @@ impl<'a> Resting<'a> {
             }
         }
         self.agree(&mut fingers);
+        for finger in &mut fingers {
+            let closing = finger.closing.clone();
+            finger.tips.retain(|&tip| self.is_moved(tip, &closing));
+        }
+        fingers.retain(|f| !f.tips.is_empty());
         fingers
+    }
+
+    /// Whether a closing joint moves a link.
+    fn is_moved(&self, link: usize, closing: &[(usize, f64)]) -> bool {
+        let closes = |&joint: &usize| {
+            let rate = self.rate(joint).filter(|(_, rate)| *rate != 0.0);
+            rate.is_some_and(|(driven, _)| closing.iter().any(|c| c.0 == driven))
+        };
+        self.model.path_to_root(link).iter().any(closes)
     }
 
     /// A finger whose closing joints all have the sense of its last joint.

@@ -12,7 +12,7 @@ use crate::hand_spec::HandSpec;
 /// Points of a pad lie in one plane within this, metres.
 const FLAT: f64 = 1e-3;
 /// Radii of pads, metres.
-const RADII: (f64, f64) = (3e-3, 15e-3);
+const RADII: (f64, f64) = (5e-3, 15e-3);
 /// The surface is this far behind the middle of the pads at most, metres.
 const DEPTH: f64 = 0.015;
 

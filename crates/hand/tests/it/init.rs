@@ -129,6 +129,29 @@ fn what_cannot_be_a_hand_is_refused_by_name() {
         "{single}"
     );
     assert!(single.to_string().contains("--palm"));
+    // A robot with two arms has two hands.
+    let one = arm(&parallel_jaws(true, true));
+    let inside = one.split_once('>').unwrap().1.trim_end_matches("</robot>");
+    let side = |mark: &str| {
+        let named = ["name", "link", "joint"]
+            .iter()
+            .fold(inside.to_owned(), |text, key| {
+                text.replace(&format!(" {key}=\""), &format!(" {key}=\"{mark}_"))
+            });
+        format!(
+            "{named}<joint name=\"{mark}\" type=\"fixed\"><parent link=\"torso\"/><child link=\"{mark}_stand\"/></joint>"
+        )
+    };
+    let both = format!(
+        "<robot name=\"two\"><link name=\"torso\"/>{}{}</robot>",
+        side("left"),
+        side("right")
+    );
+    let both = load_urdf(&both).unwrap();
+    let arms = refused(&both, None);
+    assert!(matches!(arms, InitError::Arms { .. }), "{arms}");
+    assert!(arms.to_string().contains("--palm"));
+    assert_eq!(proposed(&both, Some("right_flange")).spec.finger.len(), 2);
     let bare = r#"<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/><limit lower="0" upper="1"/></joint></robot>"#;
     assert_eq!(
         refused(&load_urdf(bare).unwrap(), None),
