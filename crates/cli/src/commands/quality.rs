@@ -293,6 +293,15 @@ fn table(path: &Path, columns: &[&str], rows: &[Row]) -> Result<Vec<u8>, Failure
     output::npy(columns.len(), values)
 }
 
+/// Six decimals, or an exponent where these would hide a number that is not zero.
+fn short(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-3 {
+        format!("{value:.3e}")
+    } else {
+        format!("{value:.6}")
+    }
+}
+
 /// A few grasps are printed one by one; of many, the mean over those that have a value.
 fn print(all: bool, columns: &[&str], rows: &[Row]) {
     if !all {
@@ -300,7 +309,8 @@ fn print(all: bool, columns: &[&str], rows: &[Row]) {
             for (i, row) in rows.iter().enumerate() {
                 let [q, lower, upper] = [0, 1, 2].map(|k| row.cells[k].unwrap_or(f64::NAN));
                 let mark = if row.converged { "" } else { "  not converged" };
-                output::say(format!("{i:5}  {q:10.6}  [{lower:.6}, {upper:.6}]{mark}"));
+                let [q, lower, upper] = [q, lower, upper].map(short);
+                output::say(format!("{i:5}  {q:>10}  [{lower}, {upper}]{mark}"));
             }
         }
         return;

@@ -136,3 +136,16 @@ fn frogger_under_a_foreign_torque_length_has_the_frames_of_every_convention() {
     assert_eq!(under("frogger", "0.02"), under("openrave", "0.02"));
     assert!((under("frogger", "1") - under("openrave", "1")).abs() > 1e-6);
 }
+
+#[test]
+fn a_small_quality_is_not_printed_as_zero() {
+    let folder = TempDir::new().unwrap();
+    write(folder.path(), &ring());
+    let length = ["quality", "g.csv", "--torque-length", "1e5"];
+    let text = stdout(&moduli(folder.path(), &length));
+    let first = text.lines().next().unwrap();
+    assert!(
+        first.contains("e-") && !first.contains("0.000000"),
+        "{text}"
+    );
+}
