@@ -17,11 +17,12 @@ use serde::Serialize;
 use serde_json::json;
 use space::transfer::run_jobs;
 
-use super::{Origin, between, carry, failed, prepare, scheme_name};
+use super::{Origin, between, carry, crossings, failed, prepare, scheme_name};
 use crate::args::{Common, TransferOptions};
 use crate::failure::Failure;
 use crate::moved::{self, Given, given};
 use crate::movement::move_all;
+use crate::output::warn;
 use crate::{files, input, output};
 
 /// A table of all pairs, written when all are done.
@@ -220,7 +221,15 @@ impl Pair<'_> {
             carry(options, &scheme, &transfer, to, placed, &origin)
                 .map_err(|e| failed(&self.from.path, i, &e))
         })?;
-        let file = moved::file(&measure, &moved)?;
+        let mut file = moved::file(&measure, &moved)?;
+        let crossings = crossings(&transfer, to).map_err(|e| Failure::other(e.to_string()))?;
+        for warning in &crossings {
+            warn(format!(
+                "{} to {}: {warning}",
+                self.from.side.stem, self.to.stem
+            ));
+        }
+        file.object.warnings.extend(crossings);
         let value = self
             .sealed(&file, scheme_name(options))
             .map_err(unencodable)?;
