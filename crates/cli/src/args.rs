@@ -18,14 +18,14 @@ pub(crate) use grasps::{
 };
 pub(crate) use hands::{
     ExportKind, ExportOptions, GraspOptions, HandCheckOptions, HandCommand, HandInitOptions,
-    HandOptions, SurfaceChoice, SynthesizeOptions,
+    HandOptions, SynthesizeOptions,
 };
 pub(crate) use library::{
     LibraryAddOptions, LibraryCommand, LibraryListOptions, LibraryRemoveOptions,
 };
 pub(crate) use scene::SceneOptions;
 pub(crate) use shapes::{
-    DistanceOptions, EvalOptions, FitOptions, InfoOptions, MeshOptions, Model,
+    DistanceOptions, EvalOptions, FitOptions, InfoOptions, MeshOptions, SurfaceChoice,
 };
 
 /// Grasps from scans: smooth surfaces with proofs, certified grasp quality, transfer between objects.

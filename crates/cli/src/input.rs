@@ -3,16 +3,14 @@
 use std::path::Path;
 
 use grasp::{Convention, Edges};
-use moduli::{
-    Object, Reconstruction, ReconstructionSettings, object_points, reconstruct, scene_notes,
-};
+use moduli::{Object, Reconstruction, ReconstructionSettings, reconstruct};
 use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use record::{EnvelopeError, GraspsFile};
 use run::npy::Table;
 use shape::io::{Loaded, Warning};
-use shape::{FitError, FitSettings, PointCloud, SceneError};
+use shape::{FitError, FitSettings, PointCloud, SceneError, SphericalCloudError};
 use sph::Direction;
 use sph::regression::RegressionError;
 
@@ -115,19 +113,6 @@ pub(crate) fn fitted(
     Ok(made)
 }
 
-/// The points of the object in a scan, and warnings about the file and the scene.
-pub(crate) fn isolated(scan: Scan, name: &str, options: &CloudOptions) -> Result<Scan, Failure> {
-    let settings = options.scene.settings();
-    let (cloud, scene) =
-        object_points(&scan.cloud, settings.as_ref()).map_err(|e| refused(name, e))?;
-    let mut warnings = scan.warnings;
-    for note in scene.iter().flat_map(scene_notes) {
-        warn(format!("{name}: {note}"));
-        warnings.push(note);
-    }
-    Ok(Scan { cloud, warnings })
-}
-
 /// Why a cloud has no object, and what to try.
 fn refused(name: &str, error: moduli::Error) -> Failure {
     let hint = match &error {
@@ -148,6 +133,9 @@ fn refused(name: &str, error: moduli::Error) -> Failure {
         moduli::Error::Unexplained { .. } => {
             "; cut away what is not the object; if a direction from the mean of the points meets the object more than once, `moduli fit --model spherical` fits it; --accept-misfit keeps this surface"
         }
+        moduli::Error::SphericalCloud(
+            SphericalCloudError::OneSide { .. } | SphericalCloudError::Unexplained(_),
+        ) => "; --accept-misfit keeps this surface",
         moduli::Error::NeitherModel { .. } => {
             "; cut away what is not the object, or scan it from more sides; --model with --accept-misfit keeps a surface that does not explain its points"
         }

@@ -7,6 +7,7 @@ use clap::{Args, Subcommand, ValueEnum};
 use hand::TipModel;
 
 use super::contact::contact_option;
+use super::shapes::SurfaceChoice;
 use super::support::SupportOptions;
 use super::{CloudOptions, ConventionOptions, count_in};
 
@@ -131,27 +132,6 @@ pub(crate) struct HandCheckOptions {
         allow_negative_numbers = true
     )]
     pub(crate) ball: f64,
-}
-
-/// The kind of surface that grasps are found on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum SurfaceChoice {
-    /// Radial where a radius explains the cloud, spherical otherwise.
-    Auto,
-    /// A radius per direction from the mean of the cloud; the object must be star-shaped.
-    Radial,
-    /// A map of the sphere into space, for any closed object; handles are closed and reported.
-    Spherical,
-}
-
-impl From<SurfaceChoice> for moduli::Model {
-    fn from(choice: SurfaceChoice) -> Self {
-        match choice {
-            SurfaceChoice::Auto => Self::Auto,
-            SurfaceChoice::Radial => Self::Radial,
-            SurfaceChoice::Spherical => Self::Spherical,
-        }
-    }
 }
 
 #[derive(Debug, Args)]

@@ -8,11 +8,23 @@ use super::{CloudOptions, count_in};
 
 /// The kind of surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Model {
+pub(crate) enum SurfaceChoice {
+    /// Radial where a radius explains the cloud, spherical otherwise.
+    Auto,
     /// A radius per direction from the mean of the cloud; the object must be star-shaped.
     Radial,
     /// A map of the sphere into space, for any closed object; handles are closed and reported.
     Spherical,
+}
+
+impl From<SurfaceChoice> for moduli::Model {
+    fn from(choice: SurfaceChoice) -> Self {
+        match choice {
+            SurfaceChoice::Auto => Self::Auto,
+            SurfaceChoice::Radial => Self::Radial,
+            SurfaceChoice::Spherical => Self::Spherical,
+        }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -25,8 +37,8 @@ pub(crate) struct FitOptions {
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
     /// Kind of surface.
-    #[arg(long, value_enum, default_value_t = Model::Radial)]
-    pub(crate) model: Model,
+    #[arg(long, value_enum, default_value_t = SurfaceChoice::Auto)]
+    pub(crate) model: SurfaceChoice,
     /// For the spherical model: the direction of each point on the sphere, as unit vectors, N×3 in
     /// .npy. Without it the directions are computed.
     #[arg(long, value_name = "U.npy")]

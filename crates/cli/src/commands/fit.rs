@@ -7,12 +7,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use moduli::Fitted;
 use moduli::records::scene_record;
+use moduli::{Fitted, Object};
 use record::grasps::SceneRecord;
 use serde::Serialize;
+use shape::Fit;
 
-use crate::args::{Common, FitOptions, Model};
+use self::wrapped::WrappedLine;
+use crate::args::{Common, FitOptions, SurfaceChoice};
 use crate::failure::Failure;
 use crate::{input, output};
 
@@ -44,74 +46,89 @@ struct FitLine {
 
 pub(crate) fn run(options: &FitOptions, common: &Common) -> Result<(), Failure> {
     refuse_shared_names(options)?;
-    if options.model == Model::Spherical {
-        return match &options.directions {
-            Some(_) => spherical::run(options, common),
-            None => wrapped::run(options, common),
+    if options.directions.is_some() {
+        return match options.model {
+            SurfaceChoice::Spherical => spherical::run(options, common),
+            _ => Err(Failure::usage("--directions needs --model spherical")),
         };
     }
-    if options.directions.is_some() {
-        return Err(Failure::usage("--directions needs --model spherical"));
-    }
-    if !common.json {
-        output::say(format!(
-            "{:28} {:>7} {:>3} {:>9} {:>8} {:>8} {:>17} {:>9} {:>7}",
-            "cloud", "points", "L", "lambda", "rms mm", "max mm", "r certified mm", "cond", "s"
-        ));
+    if options.cloud.heat.is_some() && options.model == SurfaceChoice::Spherical {
+        return Err(Failure::usage("--heat applies to --model radial only"));
     }
     let mut failures = Vec::new();
+    let mut header = !common.json;
     for path in &options.clouds {
-        let line = match fit_one(path, options, common.seed) {
-            Ok(line) => line,
-            Err(failure) => {
-                failures.push(failure);
-                continue;
+        match fit_one(path, options, common.seed) {
+            Ok(line) if common.json => output::say_json(&line)?,
+            Ok(Line::Radial(line)) => {
+                if header {
+                    output::say(HEADER);
+                    header = false;
+                }
+                say(path, &line);
             }
-        };
-        if common.json {
-            output::say_json(&line)?;
-        } else {
-            output::say(format!(
-                "{:28} {:>7} {:>3} {:>9.2e} {:>8.3} {:>8.3} {:>8.2} {:>8.2} {:>9.2} {:>7.2}",
-                input::stem(path),
-                line.points,
-                line.degree,
-                line.lambda,
-                1e3 * line.rms_m,
-                1e3 * line.max_abs_m,
-                1e3 * line.r_min_certified_m,
-                1e3 * line.r_max_certified_m,
-                line.condition,
-                line.seconds
-            ));
+            Ok(Line::Spherical(line)) => line.say(path),
+            Err(failure) => failures.push(failure),
         }
     }
     Failure::all(failures)
 }
 
-fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Failure> {
+const HEADER: &str = "cloud                         points   L    lambda   rms mm   max mm    r certified mm      cond       s";
+
+fn say(path: &Path, line: &FitLine) {
+    output::say(format!(
+        "{:28} {:>7} {:>3} {:>9.2e} {:>8.3} {:>8.3} {:>8.2} {:>8.2} {:>9.2} {:>7.2}",
+        input::stem(path),
+        line.points,
+        line.degree,
+        line.lambda,
+        1e3 * line.rms_m,
+        1e3 * line.max_abs_m,
+        1e3 * line.r_min_certified_m,
+        1e3 * line.r_max_certified_m,
+        line.condition,
+        line.seconds
+    ));
+}
+
+/// The result for one cloud.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Line {
+    Radial(Box<FitLine>),
+    Spherical(Box<WrappedLine>),
+}
+
+fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<Line, Failure> {
     let scan = input::scan(path, &options.cloud.reading, seed)?;
     let start = Instant::now();
     let name = path.display().to_string();
-    let made = input::fitted(&scan, &name, &options.cloud, moduli::Model::Radial)?;
-    let object = made.object;
-    let Fitted::Radial(fit) = made.fit else {
-        return Err(Failure::other(format!("{name}: the surface is not radial")));
-    };
+    let made = input::fitted(&scan, &name, &options.cloud, options.model.into())?;
     let seconds = start.elapsed().as_secs_f64();
     let points = scan.cloud.points().len();
-    let report = object.report().clone();
-    let isolated = report.scene.as_ref().map_or(0, |s| s.dropped.isolated);
+    let object = made.object.named(&input::stem(path));
     if let Some(target) = target(path, options) {
         let bytes = object
-            .named(&input::stem(path))
             .to_shape_file()
             .map_err(|e| Failure::other(e.to_string()))?;
         output::write_file(&target, &bytes)?;
     }
+    Ok(match made.fit {
+        Fitted::Radial(fit) => Line::Radial(Box::new(radial(name, points, &object, &fit, seconds))),
+        Fitted::Spherical(fit) => {
+            let line = WrappedLine::new(name, points, &object, &fit, seconds);
+            Line::Spherical(Box::new(line))
+        }
+    })
+}
+
+fn radial(cloud: String, points: usize, object: &Object, fit: &Fit, seconds: f64) -> FitLine {
+    let report = object.report();
+    let isolated = report.scene.as_ref().map_or(0, |s| s.dropped.isolated);
     let (r_min, r_max) = fit.shape.radius_bounds();
-    Ok(FitLine {
-        cloud: path.display().to_string(),
+    FitLine {
+        cloud,
         points,
         model: "radial",
         degree: fit.shape.degree(),
@@ -131,10 +148,10 @@ fn fit_one(path: &Path, options: &FitOptions, seed: u64) -> Result<FitLine, Fail
         multivalued_share: fit.visibility.multiple,
         centre_m: fit.centre_in_cloud.into(),
         scene: report.scene.as_ref().map(scene_record),
-        warnings: report.warnings,
+        warnings: report.warnings.clone(),
         seconds,
         seconds_regression: fit.regression_seconds,
-    })
+    }
 }
 
 /// Two clouds whose shapes would have one name, and a shape that would replace a cloud.

@@ -163,7 +163,13 @@ fn better(radial: Made, spherical: Made) -> Made {
     };
     match (radial, spherical) {
         (Ok(radial), Ok(spherical)) if !explained(&spherical) => Ok(radial),
-        (_, Ok(spherical)) => Ok(spherical),
+        (Ok(_), Ok(spherical)) => Ok(spherical),
+        (Err(radial), Ok((object, fit))) => {
+            let note = format!(
+                "no radius from the mean of the points describes them, so the surface is a map of the sphere; if the object is star-shaped, something else is part of the cloud ({radial})"
+            );
+            Ok((object.with_warnings([note]), fit))
+        }
         (Ok(radial), Err(_)) => Ok(radial),
         (Err(radial), Err(spherical)) => Err(Error::NeitherModel {
             radial: Box::new(radial),
