@@ -51,19 +51,10 @@ pub fn mesh_vertices(bytes: &[u8], name: &str) -> Result<Vec<Point3<f64>>, MeshF
     if bytes.len() > MAX_MESH_BYTES {
         return Err(MeshFileError::TooLarge { bytes: bytes.len() });
     }
-    if collada::is_collada(bytes) {
-        return collada::vertices(bytes).map_err(MeshFileError::Collada);
-    }
-    let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
-    let loaded = read_cloud(bytes, extension)?;
-    if loaded.dropped > 0 {
-        return Err(MeshFileError::NotFinite {
-            vertices: loaded.dropped,
-        });
-    }
-    let vertices = match loaded.geometry {
-        Geometry::Points(points) => points,
-        Geometry::Mesh(mesh) => mesh.vertices,
+    let vertices = if collada::is_collada(bytes) {
+        collada::vertices(bytes).map_err(MeshFileError::Collada)?
+    } else {
+        of_mesh_format(bytes, name)?
     };
     if vertices.len() > MAX_MESH_VERTICES {
         return Err(MeshFileError::TooMany {
@@ -71,6 +62,21 @@ pub fn mesh_vertices(bytes: &[u8], name: &str) -> Result<Vec<Point3<f64>>, MeshF
         });
     }
     Ok(vertices)
+}
+
+/// The vertices of a file that the reader of clouds and meshes knows.
+fn of_mesh_format(bytes: &[u8], name: &str) -> Result<Vec<Point3<f64>>, MeshFileError> {
+    let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
+    let loaded = read_cloud(bytes, extension)?;
+    if loaded.dropped > 0 {
+        return Err(MeshFileError::NotFinite {
+            vertices: loaded.dropped,
+        });
+    }
+    Ok(match loaded.geometry {
+        Geometry::Points(points) => points,
+        Geometry::Mesh(mesh) => mesh.vertices,
+    })
 }
 
 #[cfg(test)]
@@ -94,6 +100,13 @@ mod tests {
         }
         binary.extend([0u8; 2]);
         binary
+    }
+
+    #[test]
+    fn an_empty_collada_file_is_named_as_what_it_is() {
+        let empty = b"<?xml version=\"1.0\"?><COLLADA version=\"1.4.1\"><asset/></COLLADA>";
+        let error = mesh_vertices(empty, "p.dae").unwrap_err();
+        assert!(error.to_string().contains("DAE"), "{error}");
     }
 
     #[test]

@@ -39,6 +39,9 @@ pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<Point3<f64>>, String> {
         // Without a scene the geometries stand where they are.
         found = document.positions.values().flatten().copied().collect();
     }
+    if found.is_empty() {
+        return Err("the Collada file (DAE) has no vertices".to_owned());
+    }
     let unit = unit(&root)?;
     Ok(found.iter().map(|p| p * unit).collect())
 }

@@ -7,8 +7,8 @@ use nalgebra::Point3;
 use shape::acceptance::noise;
 use shape::scene::{analyse, distinct};
 use shape::{
-    Acceptance, Fit, FitError, FitSettings, PointCloud, Scene, SceneSettings, SphericalCloudFit,
-    SphericalSettings, SupportSource, Verdict, fit_spherical_cloud,
+    Acceptance, Embedding, Fit, FitError, FitSettings, PointCloud, Scene, SceneSettings,
+    SphericalCloudFit, SphericalSettings, SupportSource, Verdict, fit_spherical_cloud,
 };
 use sph::Direction;
 
@@ -106,7 +106,7 @@ pub fn reconstruct(
             let first = radial(name, &cloud, scene.as_ref(), settings);
             if settings.heat.is_none() && may_be_a_map(&first) {
                 let second = spherical(name, &cloud, scene.as_ref(), settings);
-                better(first, second)?
+                better(first, second.and_then(embedded))?
             } else {
                 first?
             }
@@ -152,6 +152,16 @@ fn may_be_a_map(radial: &Made) -> bool {
                 && fit.visibility.unobserved <= MOST_UNSEEN
         }
         Ok(_) => false,
+    }
+}
+
+/// A map that is proved not to touch itself; others are taken only when they are asked for.
+fn embedded((object, fit): (Object, Fitted)) -> Made {
+    match object.report().embedding {
+        Some(Embedding::Proved { .. }) => Ok((object, fit)),
+        _ => Err(Error::Unexplained {
+            notes: object.report().warnings.clone(),
+        }),
     }
 }
 
