@@ -39,6 +39,11 @@ const MOST_SINGLE_SHEET: f64 = 0.25;
 /// many spacings, one noisy sheet looks the same.
 const MOSTLY: f64 = 0.9;
 const THIN: f64 = 1.5;
+/// A coarse surface is accepted if its residual is at most this share of volume over area, a third of the
+/// radius of a ball: a share of the diameter would be generous to a needle.
+const MOST_COARSE: f64 = 0.15;
+/// Circles of latitude, and points on each, of the mesh whose area is taken for that.
+const AREA_GRID: (usize, usize) = (60, 120);
 /// So many surfaces of a continuation are tried for a proof.
 const PROOFS: usize = 3;
 /// Anchors move to places of the wrap within so many spacings.
@@ -310,7 +315,16 @@ impl Work<'_> {
 
     /// The fit, if it explains its points or need not.
     fn accepted(&self, fit: SphericalCloudFit) -> Result<SphericalCloudFit, SphericalCloudError> {
-        if fit.acceptance.verdict() == Verdict::Unexplained && !self.settings.accept_misfit {
+        let explained = match fit.acceptance.verdict() {
+            Verdict::Explained => true,
+            Verdict::Coarse => {
+                let area = fit.shape.mesh(AREA_GRID.0, AREA_GRID.1).area();
+                let thickness = fit.shape.mass_properties().volume / area;
+                fit.acceptance.surface_rms_m <= MOST_COARSE * thickness
+            }
+            Verdict::Unexplained => false,
+        };
+        if !explained && !self.settings.accept_misfit {
             return Err(SphericalCloudError::Unexplained(fit.acceptance));
         }
         Ok(fit)
