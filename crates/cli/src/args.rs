@@ -69,7 +69,7 @@ pub(crate) struct Common {
 pub(crate) enum Command {
     /// Fit a smooth surface to each cloud or mesh and prove it valid.
     #[command(
-        after_help = "Example: moduli fit scan.ply -o scan.shape\nExample: moduli fit mug.ply --model spherical -o mug.shape\nExample: moduli fit bent.xyz --model spherical --directions U.npy -o bent.shape"
+        after_help = "Example: moduli fit scan.ply -o scan.shape\nExample: moduli fit mug.ply -o mug.shape\nExample: moduli fit bent.xyz --model spherical --directions U.npy -o bent.shape"
     )]
     Fit(FitOptions),
     /// Evaluate a surface at given directions.

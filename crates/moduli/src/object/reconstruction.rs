@@ -165,6 +165,18 @@ fn embedded((object, fit): (Object, Fitted)) -> Made {
     }
 }
 
+/// Why the surface is a map of the sphere and not radial.
+fn not_radial(error: &Error) -> String {
+    match error {
+        Error::Fit(FitError::NotStarShaped { .. } | FitError::OpenContainer { .. }) => {
+            "the object is not star-shaped seen from the mean of its points; its surface is a map of the sphere".to_owned()
+        }
+        _ => format!(
+            "no radius from the mean of the points describes them, so the surface is a map of the sphere; if the object is star-shaped, something else is part of the cloud ({error})"
+        ),
+    }
+}
+
 /// The map where it explains the points, or where there is no radial surface.
 fn better(radial: Made, spherical: Made) -> Made {
     let explained = |made: &(Object, Fitted)| {
@@ -174,12 +186,7 @@ fn better(radial: Made, spherical: Made) -> Made {
     match (radial, spherical) {
         (Ok(radial), Ok(spherical)) if !explained(&spherical) => Ok(radial),
         (Ok(_), Ok(spherical)) => Ok(spherical),
-        (Err(radial), Ok((object, fit))) => {
-            let note = format!(
-                "no radius from the mean of the points describes them, so the surface is a map of the sphere; if the object is star-shaped, something else is part of the cloud ({radial})"
-            );
-            Ok((object.with_warnings([note]), fit))
-        }
+        (Err(radial), Ok((object, fit))) => Ok((object.with_warnings([not_radial(&radial)]), fit)),
         (Ok(radial), Err(_)) => Ok(radial),
         (Err(radial), Err(spherical)) => Err(Error::NeitherModel {
             radial: Box::new(radial),
