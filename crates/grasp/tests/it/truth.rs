@@ -252,13 +252,13 @@ fn half() -> usize {
 
 /// `cargo test --release -p moduli-grasp --test it -- --ignored --nocapture hundred_thousand`
 #[test]
-#[ignore = "half an hour"]
+#[ignore = "takes half an hour: cargo test -p moduli-grasp -- --ignored hundred_thousand"]
 fn a_hundred_thousand_structured_grasps_hold_the_truth_of_few_edges() {
     run(half(), 3, true);
 }
 
 #[test]
-#[ignore = "half an hour"]
+#[ignore = "takes half an hour: cargo test -p moduli-grasp -- --ignored hundred_thousand"]
 fn a_hundred_thousand_structured_grasps_hold_the_truth_of_many_edges() {
     run(half(), 4, false);
 }
