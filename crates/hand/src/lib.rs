@@ -70,3 +70,4 @@ pub use urdf::{
     MAX_LENGTH_M, MAX_LINKS, MAX_PIECES, MAX_URDF_BYTES, MAX_URDF_DEPTH, MAX_URDF_ELEMENTS,
     UrdfError, load_urdf, load_urdf_with_meshes, urdf_text,
 };
+pub use xml::XmlError;

@@ -28,22 +28,9 @@ pub const MAX_LENGTH_M: f64 = 10.0;
 /// Why a URDF was refused.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum UrdfError {
-    /// The text is too long.
-    #[error("the URDF has {bytes} bytes, more than {limit}")]
-    TooLarge {
-        /// Its length.
-        bytes: usize,
-        /// The limit.
-        limit: usize,
-    },
-    /// Elements nest too deeply.
-    #[error("elements nest deeper than {limit} at byte {byte}")]
-    TooDeep {
-        /// Where.
-        byte: usize,
-        /// The limit.
-        limit: usize,
-    },
+    /// The text is not an acceptable XML document.
+    #[error(transparent)]
+    Xml(#[from] XmlError),
     /// There are too many of something.
     #[error("{count} {what}, more than {limit}")]
     TooMany {
@@ -53,14 +40,6 @@ pub enum UrdfError {
         count: usize,
         /// The limit.
         limit: usize,
-    },
-    /// Not well-formed XML.
-    #[error("not XML at byte {byte}: {what}")]
-    NotXml {
-        /// Where.
-        byte: usize,
-        /// What is wrong.
-        what: String,
     },
     /// An entry that is not a number.
     #[error("'{word}' in the {what} at byte {byte} is no number")]
@@ -83,12 +62,6 @@ pub enum UrdfError {
         count: usize,
         /// Number of entries expected.
         expected: usize,
-    },
-    /// A document type (and so possibly entities) is declared.
-    #[error("a document type or entity is declared at byte {byte}; URDFs need none")]
-    Doctype {
-        /// Where.
-        byte: usize,
     },
     /// The file is not a URDF.
     #[error("this is {found}, not a URDF; {advice}")]
@@ -237,22 +210,6 @@ pub enum UrdfError {
         /// What went wrong.
         reason: String,
     },
-}
-
-impl From<XmlError> for UrdfError {
-    fn from(error: XmlError) -> Self {
-        match error {
-            XmlError::TooLarge { bytes, limit } => UrdfError::TooLarge { bytes, limit },
-            XmlError::TooDeep { byte, limit } => UrdfError::TooDeep { byte, limit },
-            XmlError::TooMany { count, limit } => UrdfError::TooMany {
-                what: "elements",
-                count,
-                limit,
-            },
-            XmlError::NotXml { byte, what } => UrdfError::NotXml { byte, what },
-            XmlError::Doctype { byte } => UrdfError::Doctype { byte },
-        }
-    }
 }
 
 /// Reads a hand whose collision geometry is made of primitives; meshes are refused by name.

@@ -65,9 +65,9 @@ impl Element {
 
 /// Why a text was not taken for XML.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub(crate) enum XmlError {
+pub enum XmlError {
     /// The text is too long.
-    #[error("{bytes} bytes, more than {limit}")]
+    #[error("the text has {bytes} bytes, more than {limit}")]
     TooLarge {
         /// Its length.
         bytes: usize,
@@ -99,7 +99,9 @@ pub(crate) enum XmlError {
         what: String,
     },
     /// A document type (and so possibly entities) is declared.
-    #[error("a document type or entity is declared at byte {byte}")]
+    #[error(
+        "a document type or entity is declared at byte {byte}; robot files need none, so remove it"
+    )]
     Doctype {
         /// Where.
         byte: usize,

@@ -1,11 +1,11 @@
 //! Hands stay above the plane on which the object stands: open, on the way, closed, and when they are
 //! looked for.
 
-use crate::common::{egg, object_from_links, paper_params, seeded};
+use crate::common::{egg, object_from_links, on_ground, paper_params, seeded};
 use grasp::Contact;
 use hand::{
-    ClosingRules, CollisionObject, Hand, PoseSampling, ReachOutcome, ReachParams, Rejection,
-    SynthesisParams, close_hand, hand_meshes, reach_contacts, schunk_sdh, synthesize,
+    CollisionObject, Hand, ReachOutcome, ReachParams, Rejection, close_hand, hand_meshes,
+    reach_contacts, schunk_sdh, synthesize,
 };
 use nalgebra::{Isometry3, UnitVector3, Vector3};
 use shape::{RadialShape, Support};
@@ -16,21 +16,6 @@ fn ground(surface: &RadialShape, normal: UnitVector3<f64>) -> Support {
     Support {
         normal,
         offset_m: heights.fold(f64::INFINITY, f64::min),
-    }
-}
-
-fn on_ground(hand: &Hand, poses: usize, support: Support) -> SynthesisParams {
-    let plain = paper_params(hand, poses);
-    SynthesisParams {
-        rules: ClosingRules {
-            support: Some(support),
-            ..plain.rules
-        },
-        sampling: PoseSampling {
-            support: Some((support, 3e-3)),
-            ..plain.sampling
-        },
-        ..plain
     }
 }
 

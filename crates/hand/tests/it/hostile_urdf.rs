@@ -1,6 +1,8 @@
 //! URDFs and specs that are broken on purpose are refused by name, quickly and without a panic.
 
-use hand::{Hand, HandSpec, SDH_SPEC, SDH_URDF, UrdfError, load_urdf, load_urdf_with_meshes};
+use hand::{
+    Hand, HandSpec, SDH_SPEC, SDH_URDF, UrdfError, XmlError, load_urdf, load_urdf_with_meshes,
+};
 
 fn joint(name: &str, kind: &str, parent: &str, child: &str, more: &str) -> String {
     format!(
@@ -202,14 +204,26 @@ fn huge_meshes_are_refused_by_name_before_they_are_worked_on() {
 #[test]
 fn bombs_are_refused_before_they_are_parsed() {
     let nested = format!("{}{}", "<a>".repeat(200_000), "</a>".repeat(200_000));
-    assert!(matches!(load_urdf(&nested), Err(UrdfError::TooDeep { .. })));
+    assert!(matches!(
+        load_urdf(&nested),
+        Err(UrdfError::Xml(XmlError::TooDeep { .. }))
+    ));
     let bomb =
         r#"<!DOCTYPE r [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;">]><robot name="&b;"/>"#;
-    assert!(matches!(load_urdf(bomb), Err(UrdfError::Doctype { .. })));
+    assert!(matches!(
+        load_urdf(bomb),
+        Err(UrdfError::Xml(XmlError::Doctype { .. }))
+    ));
     let long = " ".repeat(5 << 20);
-    assert!(matches!(load_urdf(&long), Err(UrdfError::TooLarge { .. })));
+    assert!(matches!(
+        load_urdf(&long),
+        Err(UrdfError::Xml(XmlError::TooLarge { .. }))
+    ));
     let many = robot(&"<link name='a'/>".repeat(60_000));
-    assert!(matches!(load_urdf(&many), Err(UrdfError::TooMany { .. })));
+    assert!(matches!(
+        load_urdf(&many),
+        Err(UrdfError::Xml(XmlError::TooMany { .. }))
+    ));
     let many = robot(&"<link name='a'/>".repeat(600));
     assert!(matches!(load_urdf(&many), Err(UrdfError::TooMany { .. })));
     for text in [

@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::common::{egg, link_distance, object_from_links, paper_params, parry_mesh, seeded};
+use crate::common::{
+    egg, link_distance, object_from_links, on_ground, paper_params, parry_mesh, seeded,
+};
 use hand::{
-    ClosingRules, CollisionObject, Geometry, Hand, HandModel, PointTree, PoseSampling,
-    Surroundings, SynthesisParams, hand_meshes, load_urdf_with_meshes, propose, schunk_sdh,
-    synthesize, synthesize_on, touching_joints,
+    CollisionObject, Geometry, Hand, HandModel, PointTree, Surroundings, hand_meshes,
+    load_urdf_with_meshes, propose, schunk_sdh, synthesize, synthesize_on, touching_joints,
 };
 use nalgebra::{Isometry3, Point3, Vector3};
 use parry3d_f64::math::Vector;
@@ -122,18 +123,7 @@ fn grasps(hand: &Hand, cloud: &PointCloud) -> (Vec<Placed>, Support, Point3<f64>
             cloud: PointTree::new(centred),
             ..Surroundings::default()
         }));
-    let plain = paper_params(hand, 200);
-    let params = SynthesisParams {
-        rules: ClosingRules {
-            support: Some(support),
-            ..plain.rules
-        },
-        sampling: PoseSampling {
-            support: Some((support, 3e-3)),
-            ..plain.sampling
-        },
-        ..plain
-    };
+    let params = on_ground(hand, 200, support);
     let found = synthesize_on(&object, hand, &params, &mut seeded(6), &|| {}).unwrap();
     let placed = found.grasps.iter().take(20).map(|g| {
         let joints = touching_joints(&object, hand, &g.object_from_palm, &g.joints);

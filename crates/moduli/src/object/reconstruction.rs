@@ -315,7 +315,8 @@ pub fn scene_notes(scene: &Scene) -> Vec<String> {
     if dropped.support > 0
         && let Some((plane, source)) = &scene.support
     {
-        let n = plane.normal;
+        // Rounded here, so that a small negative component is not printed as -0.000.
+        let n = plane.normal.map(|x| (1e3 * x).round() / 1e3 + 0.0);
         let whose = match source {
             SupportSource::Given => "given",
             SupportSource::Visible | SupportSource::Foot => "found",

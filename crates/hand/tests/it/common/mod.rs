@@ -165,3 +165,19 @@ pub fn paper_params(hand: &Hand, poses: usize) -> hand::SynthesisParams {
         least_quality: 0.01,
     }
 }
+
+/// The same above a support plane.
+pub fn on_ground(hand: &Hand, poses: usize, support: shape::Support) -> hand::SynthesisParams {
+    let plain = paper_params(hand, poses);
+    hand::SynthesisParams {
+        rules: hand::ClosingRules {
+            support: Some(support),
+            ..plain.rules
+        },
+        sampling: hand::PoseSampling {
+            support: Some((support, 3e-3)),
+            ..plain.sampling
+        },
+        ..plain
+    }
+}
