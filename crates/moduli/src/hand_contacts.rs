@@ -23,9 +23,19 @@ pub struct HandContacts<'a> {
 pub struct FoundContacts {
     /// One contact per finger whose tip is at the surface.
     pub contacts: Vec<Contact>,
-    /// Names of the fingers whose tips are not at the surface, with their distance in metres; `None` for
-    /// a tip that is deep inside the object.
-    pub without: Vec<(String, Option<f64>)>,
+    /// Names of the fingers without a contact, and why.
+    pub without: Vec<(String, NoContact)>,
+}
+
+/// Why a finger makes no contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NoContact {
+    /// The tip is so far from the surface, metres.
+    Away(f64),
+    /// The tip is deep inside the object.
+    Inside,
+    /// The surface there closes a hole of the object, so that there is nothing to touch.
+    ClosedHole,
 }
 
 impl<'a> HandContacts<'a> {
@@ -87,13 +97,19 @@ impl<'a> HandContacts<'a> {
                 }
             }
             match touch {
+                Some(touch) if self.collision.is_closed_hole(&touch.position) => {
+                    found
+                        .without
+                        .push((finger.name.clone(), NoContact::ClosedHole));
+                }
                 Some(touch) if touch.gap <= Self::REACH => found.contacts.push(Contact {
                     position: frame.to_cloud(&touch.position),
                     inward_normal: touch.inward_normal,
                 }),
-                other => found
-                    .without
-                    .push((finger.name.clone(), other.map(|touch| touch.gap))),
+                other => {
+                    let why = other.map_or(NoContact::Inside, |touch| NoContact::Away(touch.gap));
+                    found.without.push((finger.name.clone(), why));
+                }
             }
         }
         Ok(found)

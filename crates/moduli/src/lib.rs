@@ -51,7 +51,7 @@ mod synthesis;
 pub use crate::error::Error;
 pub use crate::frame::CloudFrame;
 pub use crate::grasp::{Grasp, Grasps, HandPlacement, Source, ranked};
-pub use crate::hand_contacts::{FoundContacts, HandContacts};
+pub use crate::hand_contacts::{FoundContacts, HandContacts, NoContact};
 pub use crate::hands::HandSearch;
 pub use crate::library::{Library, Neighbour, TransferOptions};
 pub use crate::library_entry::{Kept, separation};

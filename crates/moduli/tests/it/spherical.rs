@@ -1,7 +1,9 @@
 //! Objects whose surface is a map of the sphere.
 
 use moduli::nalgebra::Point3;
-use moduli::{Convention, Error, FitSettings, Object, PointCloud};
+use moduli::{
+    Convention, Error, FitSettings, Hand, HandContacts, NoContact, Object, PointCloud, Poses,
+};
 
 const SETTINGS: FitSettings = FitSettings {
     degree: 4,
@@ -62,6 +64,37 @@ fn closed_holes_are_kept_and_no_contact_climbs_onto_them() {
     }
     record.closed_holes[0].reach_m = f64::NAN;
     assert!(Object::from_spherical_record(&record).is_err());
+}
+
+#[test]
+fn a_finger_on_a_closed_hole_has_no_contact() {
+    let (cloud, directions) = ball();
+    let object = Object::from_directions("ball", &cloud, &directions, &SETTINGS).unwrap();
+    let hand = Hand::schunk_sdh().unwrap();
+    let poses = Poses {
+        count: 60,
+        ..Poses::default()
+    };
+    let measure = object.measure(&Convention::paper()).unwrap();
+    let grasps = measure.synthesize(&hand, &poses).unwrap();
+    let grasp = &grasps.best(1)[0];
+    let placed = grasp.hand().unwrap();
+    let pose = object.frame().pose_to_cloud(&placed.centred_from_palm);
+    let contacts = |object: &Object| {
+        let hands = HandContacts::new(object, &hand).unwrap();
+        hands.of(&pose, &placed.joints).unwrap()
+    };
+    let open = contacts(&object);
+    assert!(open.without.is_empty(), "{:?}", open.without);
+    let mut record = object.to_spherical_record().unwrap();
+    record.closed_holes = vec![moduli::record::ClosedHoleRecord {
+        places_m: vec![open.contacts[1].position.into()],
+        reach_m: 0.01,
+        area_m2: 1e-4,
+    }];
+    let closed = contacts(&Object::from_spherical_record(&record).unwrap());
+    assert_eq!(closed.contacts.len(), open.contacts.len() - 1);
+    assert_eq!(closed.without[0].1, NoContact::ClosedHole);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use grasp::{Convention, Grasp};
 use hand::Hand;
-use moduli::{FoundContacts, HandContacts, Object};
+use moduli::{FoundContacts, HandContacts, NoContact, Object};
 use record::{IsaacFile, IsaacGrasp};
 
 use super::GraspSet;
@@ -44,8 +44,11 @@ pub(super) fn read_isaac(
     let (mut left_out, mut partial) = (Vec::new(), Vec::new());
     for grasp in &file.grasps {
         let joints = driven(path, grasp, &hand)?;
+        let pose = grasp.pose.isometry().ok_or_else(|| {
+            Failure::input(path, format!("{}: the orientation is zero", grasp.name))
+        })?;
         let found = contacts
-            .of(&grasp.pose.isometry().unwrap_or_default(), &joints)
+            .of(&pose, &joints)
             .map_err(|e| Failure::input(path, format!("{}: {e}", grasp.name)))?;
         if found.contacts.len() < 2 {
             left_out.push(described(&grasp.name, &found));
@@ -115,9 +118,10 @@ fn driven(path: &Path, grasp: &IsaacGrasp, hand: &Hand) -> Result<Vec<f64>, Fail
 
 /// "grasp_3 (finger_1 12.0 mm from the surface)".
 fn described(name: &str, found: &FoundContacts) -> String {
-    let finger = |(finger, gap): &(String, Option<f64>)| match gap {
-        Some(gap) => format!("{finger} {:.1} mm from the surface", 1e3 * gap),
-        None => format!("{finger} deep inside the object"),
+    let finger = |(finger, why): &(String, NoContact)| match why {
+        NoContact::Away(gap) => format!("{finger} {:.1} mm from the surface", 1e3 * gap),
+        NoContact::Inside => format!("{finger} deep inside the object"),
+        NoContact::ClosedHole => format!("{finger} where a hole of the object was closed"),
     };
     let fingers: Vec<String> = found.without.iter().map(finger).collect();
     format!("{name} ({})", fingers.join(", "))
